@@ -16,8 +16,7 @@ from diffusers import DDIMScheduler, DDPMScheduler
 from records import record, show, write_records
 from timing import in_turn
 
-from motiondiff_edu.ddpm import linear_schedule, sample_steps
-from motiondiff_edu.fast.samplers import ddim_steps, ddpm_steps
+from motiondiff_edu.ddpm import ddim_steps, linear_schedule, sample_steps
 
 S, SHAPE = 100, (1, 10, 63)
 COMMAND = "python -m benchmarks sampler"
@@ -90,8 +89,7 @@ def main() -> None:
     args = parser.parse_args()
     torch.set_num_threads(1)
     runs = {
-        "ours": run_ours(ddpm_steps),
-        "plain": run_ours(sample_steps),
+        "ours": run_ours(sample_steps),
         "ours_ddim": run_ours(lambda m, x, sch: ddim_steps(m, x, sch, steps=S)),
         "diffusers": run_diffusers(DDPMScheduler),
         "diffusers_ddim": run_diffusers(DDIMScheduler),

@@ -9,6 +9,7 @@ Source: MoFusion eq. 8-9; MoDiff IV-A (T5-style relative positions).  Notebook: 
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import NamedTuple
 
 import torch
 from jaxtyping import Float, Int
@@ -109,6 +110,13 @@ def rotary(x: Float[Tensor, "*B T d"], angles: Float[Tensor, "T w"]) -> Float[Te
     return torch.cat([a * cos - b * sin, a * sin + b * cos], dim=-1)
 
 
+class KeysValues(NamedTuple):
+    """The keys and values of one layer of attention."""
+
+    keys: Float[Tensor, "B H M d"]
+    values: Float[Tensor, "B H M d"]
+
+
 class CrossModalAttention(nn.Module):
     """Multi-head attention: queries from `x`, keys and values from `context`.
 
@@ -142,16 +150,33 @@ class CrossModalAttention(nn.Module):
 
         `angles`: of `rotary`, for queries and keys; None: no rotation.
         """
-        q = self.split(self.q(x))
+        of_queries, of_keys = angles if angles is not None else (None, None)
+        return self.read(x, self.keys_and_values(context, of_keys), bias, of_queries)
+
+    def keys_and_values(
+        self, context: Float[Tensor, "B M C"], angles: Float[Tensor, "M w"] | None = None
+    ) -> KeysValues:
+        """What this layer keeps of a context. It does not depend on the queries."""
         k, v = (self.split(part) for part in self.kv(context).chunk(2, dim=-1))
+        return KeysValues(k if angles is None else rotary(k, angles), v)
+
+    def read(
+        self,
+        x: Float[Tensor, "B T W"],
+        memory: KeysValues,
+        bias: Float[Tensor, "#B #H T M"] | None = None,
+        angles: Float[Tensor, "T w"] | None = None,
+    ) -> Float[Tensor, "B T W"]:
+        """Queries from x read keys and values that were computed before."""
+        q = self.split(self.q(x))
         if angles is not None:
-            q, k = rotary(q, angles[0]), rotary(k, angles[1])
+            q = rotary(q, angles)
         if self.watcher is None:
-            out = F.scaled_dot_product_attention(q, k, v, attn_mask=bias)
+            out = F.scaled_dot_product_attention(q, memory.keys, memory.values, attn_mask=bias)
         else:
-            weights = attention_weights(q, k, bias)
+            weights = attention_weights(q, memory.keys, bias)
             self.watcher.append(weights.detach())
-            out = weights @ v
+            out = weights @ memory.values
         return self.out(out.transpose(1, 2).flatten(-2))
 
 
@@ -181,13 +206,14 @@ class Block(nn.Module):
         self,
         x: Float[Tensor, "B T W"],
         bias: Float[Tensor, "1 H T T"] | None = None,
-        context: Float[Tensor, "B M W"] | None = None,
+        context: KeysValues | None = None,
         context_bias: Float[Tensor, "1 H T M"] | None = None,
     ) -> Float[Tensor, "B T W"]:
+        """`context`: what `cross_attention.keys_and_values` made of it."""
         normed = self.norm_self(x)
         x = x + self.drop(self.self_attention(normed, normed, bias))
         if self.with_context:
-            x = x + self.drop(self.cross_attention(self.norm_cross(x), context, context_bias))
+            x = x + self.drop(self.cross_attention.read(self.norm_cross(x), context, context_bias))
         return x + self.drop(self.ff(self.norm_ff(x)))
 
 

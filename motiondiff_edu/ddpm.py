@@ -14,8 +14,9 @@ import warnings
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from numbers import Integral
-from typing import SupportsIndex, TypeVar
+from typing import NamedTuple, SupportsIndex, TypeVar
 
 import torch
 from jaxtyping import Float, Int
@@ -30,6 +31,20 @@ Record = TypeVar("Record")  # what a sampling loop yields, such as Step
 
 
 # ---- schedules -----------------------------------------------------------------------------------
+class StepNumbers(NamedTuple):
+    """The numbers of a step: x_s = signal x0 + noise eps.
+
+    Floats for one step; for a step of each sample, tensors that multiply the batch.
+    """
+
+    beta: float | Tensor
+    alpha: float | Tensor
+    alpha_bar: float | Tensor
+    signal: float | Tensor  # sqrt(alpha_bar)
+    noise: float | Tensor  # sqrt(1 - alpha_bar)
+    beta_tilde: float | Tensor  # the posterior's variance
+
+
 @dataclass(frozen=True, eq=False)
 class Schedule:
     """How much noise each step adds.
@@ -50,6 +65,26 @@ class Schedule:
     def signal_left(self) -> float:
         """sqrt(alpha_bar[S]): the fraction of the clean sample's amplitude after the last step."""
         return math.sqrt(float(self.alpha_bar[-1]))
+
+    def at(self, s: Steps, x: X, first: int = 0) -> StepNumbers:
+        """The numbers of the step s: one for all, or one for each sample of the batch x.
+
+        Raises IndexError for a step below `first` or above S.
+        """
+        if not isinstance(s, Tensor):
+            return self._numbers[checked_step(s, self.S, first)]
+        return StepNumbers(*(at(table, s, x, first) for table in self._tables))
+
+    @property
+    def _tables(self) -> tuple[Table, ...]:
+        signal, noise = self.alpha_bar.sqrt(), (1 - self.alpha_bar).sqrt()
+        return self.beta, self.alpha, self.alpha_bar, signal, noise, posterior_variance(self)
+
+    @cached_property
+    def _numbers(self) -> list[StepNumbers]:
+        """Read once: a sampler needs them at every step, and a tensor is slow to give a number."""
+        rows = zip(*(table.tolist() for table in self._tables), strict=True)
+        return [StepNumbers(*row) for row in rows]
 
 
 def make_schedule(beta: Float[Tensor, "S"], name: str = "schedule") -> Schedule:
@@ -177,8 +212,8 @@ def q_step(x_prev: X, s: Steps, schedule: Schedule, noise: X) -> X:
 
     Source: MoDiff eq. 1; MoFusion eq. 1.
     """
-    beta = at(schedule.beta, s, x_prev)
-    return (1 - beta).sqrt() * x_prev + beta.sqrt() * noise
+    beta = schedule.at(s, x_prev).beta
+    return (1 - beta) ** 0.5 * x_prev + beta**0.5 * noise
 
 
 def q_sample(x0: X, s: Steps, schedule: Schedule, noise: X) -> X:
@@ -186,8 +221,8 @@ def q_sample(x0: X, s: Steps, schedule: Schedule, noise: X) -> X:
 
     Source: MoDiff eq. 2; MoFusion eq. 2.
     """
-    signal, noise_share = at(schedule.alpha_bar, s, x0), at(1 - schedule.alpha_bar, s, x0)
-    return signal.sqrt() * x0 + noise_share.sqrt() * noise
+    now = schedule.at(s, x0)
+    return now.signal * x0 + now.noise * noise
 
 
 def posterior_variance(schedule: Schedule) -> Table:
@@ -202,33 +237,41 @@ def q_posterior(x0: X, x_s: X, s: Steps, schedule: Schedule) -> tuple[X, Tensor]
     mean = sqrt(ab_{s-1}) beta_s / (1 - ab_s) x0 + sqrt(alpha_s) (1 - ab_{s-1}) / (1 - ab_s) x_s
     Source: MoDiff eq. 6-7. Notebook: 02.
     """
-    beta, alpha = at(schedule.beta, s, x_s, first=1), at(schedule.alpha, s, x_s)
-    left = at(1 - schedule.alpha_bar, s, x_s)
-    left_before = at(1 - schedule.alpha_bar, s - 1, x_s)
-    signal_before = at(schedule.alpha_bar, s - 1, x_s).sqrt()
-    mean = signal_before * beta / left * x0 + alpha.sqrt() * left_before / left * x_s
-    return mean, at(posterior_variance(schedule), s, x_s)
+    now, before = schedule.at(s, x_s, first=1), schedule.at(s - 1, x_s)
+    to_x0 = before.signal * now.beta / now.noise**2
+    to_x_s = now.alpha**0.5 * before.noise**2 / now.noise**2
+    return to_x0 * x0 + to_x_s * x_s, at(posterior_variance(schedule), s, x_s)
 
 
 # ---- reverse: removing noise ---------------------------------------------------------------------
 @dataclass(frozen=True, eq=False)
 class Step:
-    """One step of sampling: x_s, and the denoiser's x0_hat and eps_hat for it.
+    """One step of sampling: x_s, and the denoiser's eps_hat and x0_hat for it.
 
-    At s = 0, x_s is the sample itself.
+    At s = 0, x_s is the sample itself, and so is x0_hat.
     """
 
     s: int
     x_s: Tensor
-    x0_hat: Tensor
     eps_hat: Tensor
+    schedule: Schedule
+
+    @property
+    def x0_hat(self) -> Tensor:
+        """(x_s - sqrt(1 - alpha_bar_s) eps_hat) / sqrt(alpha_bar_s)."""
+        now = self.schedule.at(self.s, self.x_s)
+        return (self.x_s - now.noise * self.eps_hat) / now.signal
 
 
 def p_variance(schedule: Schedule, variance: str = "beta") -> Table:
     """Variance of p(x_{s-1} | x_s): beta_s, or the bound beta_tilde_s. Source: MoDiff eq. 3."""
+    return schedule.beta if _is_beta(variance) else posterior_variance(schedule)
+
+
+def _is_beta(variance: str) -> bool:
     if variance not in ("beta", "posterior"):
         raise ValueError(f'variance must be "beta" or "posterior", not {variance!r}')
-    return schedule.beta if variance == "beta" else posterior_variance(schedule)
+    return variance == "beta"
 
 
 def p_mean(x_s: X, s: Steps, eps_hat: X, schedule: Schedule) -> X:
@@ -236,17 +279,21 @@ def p_mean(x_s: X, s: Steps, eps_hat: X, schedule: Schedule) -> X:
 
     Source: MoDiff eq. 9. Notebook: 04
     """
-    share = at(schedule.beta, s, x_s, first=1) / at(1 - schedule.alpha_bar, s, x_s).sqrt()
-    return (x_s - share * eps_hat) / at(schedule.alpha, s, x_s).sqrt()
+    now = schedule.at(s, x_s, first=1)
+    return (x_s - now.beta / now.noise * eps_hat) / now.alpha**0.5
 
 
-def p_sample(x_s: X, s: int, eps_hat: X, schedule: Schedule, noise: X, variance: str = "beta") -> X:
+def p_sample(
+    x_s: X, s: int, eps_hat: X, schedule: Schedule, noise: X | None, variance: str = "beta"
+) -> X:
     """x_{s-1} = p_mean + sigma_s noise; the last step, s = 1, adds none.
 
     Source: MoDiff eq. 11; MoFusion eq. 3.
     """
     mean = p_mean(x_s, s, eps_hat, schedule)
-    return mean if s == 1 else mean + at(p_variance(schedule, variance), s, x_s).sqrt() * noise
+    now, last = schedule.at(s, x_s), s == 1
+    sigma = math.sqrt(now.beta if _is_beta(variance) else now.beta_tilde)
+    return mean if last else mean + sigma * noise
 
 
 @torch.no_grad()
@@ -262,30 +309,26 @@ def sample_steps(
 ) -> Iterator[Step]:
     """Sample from x_S back to x0, yielding S + 1 records, s = S..0; `start` is x_S, or its shape.
 
-    noise[s - 1], if given, is the noise of step s. `clip` clamps x0_hat to [-clip, clip].
+    noise[s - 1], if given, is the noise of step s; the last step, s = 1, draws none. `clip`
+    clamps x0_hat to [-clip, clip].
     Source: MoDiff Alg. 2. Notebook: 03.
     """
     x_s = starting_noise(start, generator)
     for s in range(schedule.S, 0, -1):
         eps_hat = denoise(x_s, torch.full((len(x_s),), s, device=x_s.device))
-        x0_hat, eps_hat = _clean_guess(x_s, s, eps_hat, schedule, clip)
-        yield Step(s, x_s, x0_hat, eps_hat)
-        z = draw(x_s, generator) if noise is None else noise[s - 1]
+        if clip is not None:
+            eps_hat = clipped(x_s, s, eps_hat, schedule, clip)
+        yield Step(s, x_s, eps_hat, schedule)
+        z = None if s == 1 else draw(x_s, generator) if noise is None else noise[s - 1]
         x_s = p_sample(x_s, s, eps_hat, schedule, z, variance)
-    yield Step(0, x_s, x_s, torch.zeros_like(x_s))
+    yield Step(0, x_s, torch.zeros_like(x_s), schedule)
 
 
-def _clean_guess(
-    x_s: Tensor, s: int, eps_hat: Tensor, schedule: Schedule, clip: float | None
-) -> tuple[Tensor, Tensor]:
-    """x0_hat, clamped to +-clip if clip is given, and the eps_hat that belongs to it."""
-    signal = at(schedule.alpha_bar, s, x_s).sqrt()
-    sigma = at(1 - schedule.alpha_bar, s, x_s).sqrt()
-    x0_hat = (x_s - sigma * eps_hat) / signal
-    if clip is not None:
-        x0_hat = x0_hat.clamp(-clip, clip)
-        eps_hat = (x_s - signal * x0_hat) / sigma
-    return x0_hat, eps_hat
+def clipped(x_s: X, s: int, eps_hat: X, schedule: Schedule, clip: float) -> X:
+    """The eps_hat that belongs to an x0_hat within -clip..clip."""
+    now = schedule.at(s, x_s, first=1)
+    x0_hat = ((x_s - now.noise * eps_hat) / now.signal).clamp(-clip, clip)
+    return (x_s - now.signal * x0_hat) / now.noise
 
 
 def timesteps(S: int, steps: int) -> list[int]:
@@ -323,7 +366,7 @@ def ddim_sigma(s: int, after: int, schedule: Schedule, eta: float) -> float:
     if not 0 <= eta <= 1:
         raise ValueError(f"eta must be between 0 (no noise) and 1 (as DDPM), not {eta}")
     checked_step(after, checked_step(s, schedule.S, first=1) - 1)
-    now, then = float(schedule.alpha_bar[s]), float(schedule.alpha_bar[after])
+    now, then = (schedule.alpha_bar[step].item() for step in (s, after))
     return eta * math.sqrt((1 - then) / (1 - now) * (1 - now / then))
 
 
@@ -341,8 +384,8 @@ def ddim_step(
 
     Source: DDIM (Song, Meng and Ermon, 2021).
     """
-    then = float(schedule.alpha_bar[checked_step(after, schedule.S)])
-    x = math.sqrt(then) * x0_hat + math.sqrt(max(1 - then - sigma**2, 0.0)) * eps_hat
+    then = schedule.at(after, x0_hat)
+    x = then.signal * x0_hat + math.sqrt(max(then.noise**2 - sigma**2, 0.0)) * eps_hat
     return x + sigma * noise if sigma else x
 
 
@@ -371,11 +414,13 @@ def ddim_steps(
     for s, after in zip(visited, [*visited[1:], 0], strict=True):
         sigma = ddim_sigma(s, after, schedule, eta)
         eps_hat = denoise(x_s, torch.full((len(x_s),), s, device=x_s.device))
-        x0_hat, eps_hat = _clean_guess(x_s, s, eps_hat, schedule, clip)
-        yield Step(s, x_s, x0_hat, eps_hat)
+        if clip is not None:
+            eps_hat = clipped(x_s, s, eps_hat, schedule, clip)
+        step = Step(s, x_s, eps_hat, schedule)
+        yield step
         z = None if not sigma else draw(x_s, generator) if noise is None else noise[s - 1]
-        x_s = ddim_step(x0_hat, eps_hat, after, schedule, sigma, z)
-    yield Step(0, x_s, x_s, torch.zeros_like(x_s))
+        x_s = ddim_step(step.x0_hat, eps_hat, after, schedule, sigma, z)
+    yield Step(0, x_s, torch.zeros_like(x_s), schedule)
 
 
 def final(loop: Iterable[Record]) -> Record:
@@ -410,77 +455,3 @@ def simple_loss(
     Source: MoDiff eq. 10.  Notebook: 04.
     """
     return squared_error(noise - denoise(q_sample(x0, s, schedule, noise), s), s)
-
-
-def dropped_weight(schedule: Schedule) -> Table:
-    """The weight of ||eps - eps_hat||^2 that eq. 10 leaves out.
-
-    It is 1 / (2 beta_s) * beta_s^2 / (alpha_s (1 - alpha_bar_s)).
-
-    Source: MoDiff eq. 8-10. Notebook: 04.
-    """
-    return (schedule.beta / (2 * schedule.alpha * (1 - schedule.alpha_bar))).nan_to_num(0)
-
-
-# ---- the variational bound, in nats, one value for each sample of the batch ----------------------
-def gaussian_kl(mean_1: X, variance_1: Tensor, mean_2: X, variance_2: Tensor) -> Float[Tensor, "B"]:
-    """KL(N(mean_1, variance_1 I) || N(mean_2, variance_2 I)).
-
-    It is summed over all entries of a sample.
-    Notebook: 02.
-    """
-    each = (
-        (variance_2 / variance_1).log() + (variance_1 + (mean_1 - mean_2).square()) / variance_2 - 1
-    )
-    return each.flatten(1).sum(1) / 2
-
-
-def prior_kl(x0: X, schedule: Schedule) -> Float[Tensor, "B"]:
-    """KL(q(x_S | x0) || N(0, I)), which has no parameters to learn. Source: MoDiff eq. 5."""
-    alpha_bar, one = at(schedule.alpha_bar, schedule.S, x0), torch.ones((), dtype=x0.dtype)
-    return gaussian_kl(alpha_bar.sqrt() * x0, 1 - alpha_bar, torch.zeros_like(x0), one)
-
-
-def step_kl(x0: X, x_s: X, s: int, eps_hat: X, schedule: Schedule) -> Float[Tensor, "B"]:
-    """KL(q(x_{s-1} | x_s, x0) || p(x_{s-1} | x_s)), s >= 2.
-
-    It is ||difference of the means||^2 / (2 beta_s) + a constant.
-
-    Source: MoDiff eq. 5, 8.
-    """
-    mean, variance = q_posterior(x0, x_s, s, schedule)
-    return gaussian_kl(
-        mean, variance, p_mean(x_s, s, eps_hat, schedule), at(schedule.beta, s, x_s, first=2)
-    )
-
-
-def reconstruction_nll(x0: X, x_1: X, eps_hat: X, schedule: Schedule) -> Float[Tensor, "B"]:
-    """-log p(x0 | x_1), with variance beta_1. Source: MoDiff eq. 5."""
-    variance = at(schedule.beta, 1, x_1)
-    each = (x0 - p_mean(x_1, 1, eps_hat, schedule)).square() / variance + (
-        2 * math.pi * variance
-    ).log()
-    return each.flatten(1).sum(1) / 2
-
-
-@torch.no_grad()
-def bound_terms(
-    denoise: Denoiser, x0: X, schedule: Schedule, generator: torch.Generator | None = None
-) -> Float[Tensor, "S_plus_1 B"]:
-    """Estimate every term of the negative bound with one draw each.
-
-    Their sum over s is at least -log p(x0) on average.
-
-    Row 0 is the prior's term, row 1 -log p(x0 | x_1), rows 2..S the KL of step s. Source: MoDiff
-    eq. 4-5. Notebook: 04.
-    """
-    terms = [prior_kl(x0, schedule)]
-    for s in range(1, schedule.S + 1):
-        x_s = q_sample(x0, s, schedule, draw(x0, generator))
-        eps_hat = denoise(x_s, torch.full((len(x0),), s, device=x0.device))
-        terms += [
-            reconstruction_nll(x0, x_s, eps_hat, schedule)
-            if s == 1
-            else step_kl(x0, x_s, s, eps_hat, schedule)
-        ]
-    return torch.stack(terms)

@@ -32,7 +32,6 @@ from .ddpm import (
     q_sample,
     timesteps,
 )
-from .prediction import x0_from_eps
 
 X = Float[Tensor, "B *shape"]
 
@@ -78,13 +77,13 @@ def inpaint_steps(
         if some:
             x = torch.where(known, q_sample(given, s, schedule, draw(x, generator)), x)
         eps_hat = denoise(x, torch.full((len(x),), s, device=x.device))
-        x0_hat = x0_from_eps(x, s, eps_hat, schedule)
-        yield Step(s, x, x0_hat, eps_hat)
+        step = Step(s, x, eps_hat, schedule)
+        yield step
         sigma = ddim_sigma(s, after, schedule, eta)
         noise = draw(x, generator) if sigma else None
-        x = ddim_step(x0_hat, eps_hat, after, schedule, sigma, noise)
+        x = ddim_step(step.x0_hat, eps_hat, after, schedule, sigma, noise)
     x = torch.where(known, given, x)
-    yield Step(0, x, x, torch.zeros_like(x))
+    yield Step(0, x, torch.zeros_like(x), schedule)
 
 
 def resampled(visited: Sequence[int], R: int) -> list[int]:

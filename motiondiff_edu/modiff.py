@@ -11,13 +11,13 @@ Source: MoDiff III-F, IV-A, Fig. 2.  Notebook: 07
 
 import math
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 
 import torch
 from jaxtyping import Float, Int
 from torch import Tensor, nn
 
-from .cross_modal_attention import Block, RelativeBias
+from .cross_modal_attention import Block, KeysValues, RelativeBias
 from .ddpm import Schedule, draw, q_sample, squared_error
 from .prediction import TARGETS, target_of
 
@@ -111,6 +111,27 @@ class Encoder(nn.Module):
         return x
 
 
+@dataclass(frozen=True, eq=False)
+class Memory:
+    """What the decoder needs besides x_s and s, which is the same at all steps.
+
+    So a window is encoded once and decoded S times.
+
+    steps   the embedding of every diffusion step
+    layers  for each layer of the decoder, keys and values of past and control
+    """
+
+    steps: Float[Tensor, "S_plus_1 width"]
+    layers: tuple[KeysValues, ...]
+    self_bias: Float[Tensor, "1 H T_p T_p"]
+    memory_bias: Float[Tensor, "1 H T_p M"]
+
+    def rows(self, chosen: Int[Tensor, "N"]) -> "Memory":
+        """The memory of some samples of the batch."""
+        layers = (KeysValues(*(part[chosen] for part in layer)) for layer in self.layers)
+        return replace(self, layers=tuple(layers))
+
+
 class MoDiff(nn.Module):
     """eps_hat = net(x_s, s, past, control) + w(s) x_s.
 
@@ -150,12 +171,8 @@ class MoDiff(nn.Module):
         )
         self.skip = nn.Parameter(torch.ones(config.S + 1)) if config.skip else None
 
-    def encode(
-        self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]
-    ) -> Float[Tensor, "B M width"]:
+    def encode(self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]) -> Memory:
         """The memory: past poses and control, encoded separately and then together.
-
-        It does not depend on s.
 
         Raises ValueError if past or control have the wrong number of frames.
         """
@@ -172,23 +189,24 @@ class MoDiff(nn.Module):
         both = torch.cat(
             [self.motion_encoder(motion), self.control_encoder(control)], dim=1
         )  # (B, M, width)
-        return self.memory_norm(self.cross_encoder(both))
+        tokens = self.memory_norm(self.cross_encoder(both))
+        layers = tuple(block.cross_attention.keys_and_values(tokens) for block in self.decoder)
+        every = torch.arange(self.config.S + 1, device=tokens.device)
+        steps = self.step_in(step_embedding(every, self.config.width))
+        return Memory(steps, layers, self.self_bias(), self.memory_bias())
 
     def decode(
-        self,
-        x_s: Float[Tensor, "B T_p D"],
-        s: Int[Tensor, "B"],
-        memory: Float[Tensor, "B M width"],
+        self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"], memory: Memory
     ) -> Float[Tensor, "B T_p D"]:
         """The network's prediction of its target (eps, x0 or v) from the noised future.
 
         Raises ValueError if the future has the wrong number of frames.
         """
-        out = self.head(self.attend(self.embed(x_s, s), memory))
+        out = self.head(self.attend(self.embed(x_s, s, memory), memory))
         return out if self.skip is None else out + self.skip[s][:, None, None] * x_s
 
     def embed(
-        self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"]
+        self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"], memory: Memory
     ) -> Float[Tensor, "B T_p width"]:
         """The decoder's tokens: each noised pose with its diffusion step and its time.
 
@@ -199,18 +217,16 @@ class MoDiff(nn.Module):
             raise ValueError(
                 f"this network predicts {self.config.T_p} future poses, not {x_s.shape[1]}"
             )
-        step = self.step_in(step_embedding(s, self.config.width))  # (B, width)
-        step = step[:, None].expand(-1, x_s.shape[1], -1)  # one s for all poses
+        step = memory.steps[s, None].expand(-1, x_s.shape[1], -1)  # one s for all poses
         x = self.future_in(torch.cat([x_s, step], dim=-1))
         return x + self.time[self.config.T_h :]
 
     def attend(
-        self, x: Float[Tensor, "B T_p width"], memory: Float[Tensor, "B M width"]
+        self, x: Float[Tensor, "B T_p width"], memory: Memory
     ) -> Float[Tensor, "B T_p width"]:
         """The decoder's layers."""
-        self_bias, memory_bias = self.self_bias(), self.memory_bias()
-        for block in self.decoder:
-            x = block(x, self_bias, memory, memory_bias)
+        for block, layer in zip(self.decoder, memory.layers, strict=True):
+            x = block(x, memory.self_bias, layer, memory.memory_bias)
         return x
 
     def forward(

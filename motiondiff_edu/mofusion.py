@@ -10,6 +10,7 @@ att: cross-modal attention with keys and values from the music (`CrossAttentionB
 Source: MoFusion 3.1-3.3, Fig. 3.  Notebook: 12
 """
 
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from itertools import pairwise
 
@@ -18,7 +19,7 @@ from jaxtyping import Bool, Float, Int
 from torch import Tensor, nn
 from torch.nn import functional as F
 
-from .cross_modal_attention import CrossModalAttention, angles_of
+from .cross_modal_attention import CrossModalAttention, KeysValues, angles_of
 from .modiff import step_embedding
 from .prediction import TARGETS
 
@@ -142,6 +143,13 @@ class CrossAttentionBlock(nn.Module):
         x = x + self.attention(normed, normed if context is None else context, bias, angles)
         return x + self.ff(self.norm_ff(x))
 
+    def read(
+        self, x: Float[Tensor, "B T W"], heard: KeysValues, bias, angles: Float[Tensor, "T w"]
+    ) -> Float[Tensor, "B T W"]:
+        """The same for keys and values that were computed before; `angles` of the queries."""
+        x = x + self.attention.read(self.norm(x), heard, bias, angles)
+        return x + self.ff(self.norm_ff(x))
+
 
 class MusicEncoder(nn.Module):
     """Mel frames to context: a linear layer, then (ours) convolutions.
@@ -235,39 +243,70 @@ class MoFusion(nn.Module):
         Frames from `lengths` on are padding, and their output is 0.
         Raises ValueError for music that is missing or not wanted, and for lengths outside 1..T.
         """
+        return self.decode(x_s, s, self.encode(music, x_s.shape[1], lengths))
+
+    def encode(
+        self, music: "Music | None", frames: int, lengths: Int[Tensor, "B"] | None = None
+    ) -> "Memory":
+        """What all diffusion steps have in common: a song is encoded once, and decoded S times.
+
+        Raises ValueError as `forward`.
+        """
         if (music is None) != (self.music is None):
             raise ValueError(
                 "this network dances to music; pass its music"
                 if music is None
                 else "this network takes no music; pass music=None"
             )
-        T, levels = x_s.shape[1], len(self.config.widths)
-        x = F.pad(x_s, (0, 0, 0, -T % 2**levels))
         if lengths is None:
-            lengths = torch.full((1,), T, device=x.device)
-        elif not 1 <= lengths.min() <= lengths.max() <= T:
-            raise ValueError(f"lengths must be from 1 to the {T} frames of x_s: {lengths.tolist()}")
-        views = [
-            View.of(x.shape[1], lengths, level, music, self.config) for level in range(levels + 1)
-        ]
-        step = self.step_in(step_embedding(s, 4 * self.config.widths[0]))
-        h, kept = self.into(x * views[0].mask), []
-        for level, block in enumerate(self.down):
-            h = self._block(block, h, step, music, views[level])
-            kept.append(h)
-            h = self.shorten[level](h * views[level].mask)
-        h = self._block(self.middle, h, step, music, views[levels])
-        for level, block in zip(range(levels - 1, -1, -1), self.up, strict=True):
-            h = self.lengthen[levels - 1 - level](h.repeat_interleave(2, dim=1) * views[level].mask)
-            h = self._block(block, torch.cat([h, kept[level]], dim=-1), step, music, views[level])
-        out = self.out(h) if self.skip is None else self.out(h) + self.skip[s][:, None, None] * x
-        return (out * views[0].mask)[:, :T]
+            lengths = torch.full((1,), frames, device=self.out.weight.device)
+        elif not 1 <= lengths.min() <= lengths.max() <= frames:
+            raise ValueError(
+                f"lengths must be from 1 to the {frames} frames of x_s: {lengths.tolist()}"
+            )
+        depth = len(self.config.widths)
+        padded = frames + -frames % 2**depth
+        levels = [Level.of(padded, lengths, k, music, self.config) for k in range(depth + 1)]
+        heard = {}
+        if music is not None:
+            for block, k in self._blocks():
+                heard |= self._hear(block, music, levels[k])
+        return Memory(levels, heard)
 
-    def _block(self, block, h, step, music, view):
-        h = block["res"](h, step, view.mask)
-        return block["ask"](
-            h, None if music is None else music.tokens, view.bias, view.angles[h.shape[-1]]
-        )
+    def decode(
+        self, x_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"], memory: "Memory"
+    ) -> Float[Tensor, "B T D"]:
+        """The U-Net's output for the noised motion of step s: down, the middle, and up again."""
+        levels, T = memory.levels, x_s.shape[1]
+        x = F.pad(x_s, (0, 0, 0, len(levels[0].times) - T))
+        step = self.step_in(step_embedding(s, 4 * self.config.widths[0]))
+        h, kept = self.into(x * levels[0].mask), []
+        for level, block, shorten in zip(levels, self.down, self.shorten, strict=False):
+            h = self._block(block, h, step, level, memory)
+            kept.append(h)
+            h = shorten(h * level.mask)
+        h = self._block(self.middle, h, step, levels[-1], memory)
+        for level, block, lengthen in zip(levels[-2::-1], self.up, self.lengthen, strict=True):
+            h = lengthen(h.repeat_interleave(2, dim=1) * level.mask)
+            h = self._block(block, torch.cat([h, kept.pop()], dim=-1), step, level, memory)
+        out = self.out(h) if self.skip is None else self.out(h) + self.skip[s][:, None, None] * x
+        return (out * levels[0].mask)[:, :T]
+
+    def _blocks(self) -> Iterator[tuple[nn.ModuleDict, int]]:
+        """Each block with the number of its level, in the order in which they are run."""
+        depth = len(self.down)
+        yield from zip(self.down, range(depth), strict=True)
+        yield self.middle, depth
+        yield from zip(self.up, reversed(range(depth)), strict=True)
+
+    def _hear(self, block, music: "Music", level: "Level") -> "dict[nn.Module, KeysValues]":
+        """The keys and values of the music for each layer of a block that attends to it."""
+        ask = block["ask"]
+        return {ask: ask.attention.keys_and_values(music.tokens, level.angles_of(ask)[1])}
+
+    def _block(self, block, h, step, level: "Level", memory: "Memory"):
+        h = block["res"](h, step, level.mask)
+        return memory.read(block["ask"], h, level)
 
 
 @dataclass(frozen=True, eq=False)
@@ -280,7 +319,28 @@ class Music:
 
 
 @dataclass(frozen=True, eq=False)
-class View:
+class Memory:
+    """What the U-Net needs at every diffusion step, and what does not depend on it.
+
+    levels  masks, times and angles; every frame, every second, every fourth ...
+    heard   keys and values of the music for each layer that attends to it; {} without music
+    """
+
+    levels: "list[Level]"
+    heard: dict[nn.Module, KeysValues]
+
+    def read(
+        self, ask: CrossAttentionBlock, h: Float[Tensor, "B T W"], level: "Level"
+    ) -> Float[Tensor, "B T W"]:
+        """Attention to the music; without music, to the motion itself."""
+        angles = level.angles_of(ask)
+        if not self.heard:
+            return ask(h, None, level.bias, angles)
+        return ask.read(h, self.heard[ask], level.bias, angles[0])
+
+
+@dataclass(frozen=True, eq=False)
+class Level:
     """One level of the U-Net: the mask of its frames, the attention bias, and rotation angles."""
 
     mask: Float[Tensor, "#B T 1"]
@@ -296,7 +356,7 @@ class View:
         level: int,
         music: Music | None,
         config: MoFusionConfig,
-    ) -> "View":
+    ) -> "Level":
         """The frames of a level are every 2^level-th of the T frames at the top."""
         frames = torch.arange(0, T, 2**level, device=lengths.device)
         inside, times = frames < lengths[:, None], frames / config.fps  # (B, T), and seconds
@@ -313,3 +373,7 @@ class View:
             for w in set(config.widths)
         }
         return cls(inside[..., None].float(), times, bias, angles)
+
+    def angles_of(self, block: CrossAttentionBlock) -> tuple[Tensor, Tensor]:
+        """The angles of queries and keys for a block of this level."""
+        return self.angles[block.attention.q.in_features]

@@ -9,14 +9,15 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from .ddpm import Schedule, Steps, at
+from .ddpm import Schedule, Steps
 
 TARGETS = ("eps", "x0", "v")
 
 
-def _ab(x: Tensor, s: Steps, schedule: Schedule, first: int = 0) -> tuple[Tensor, Tensor]:
+def _ab(x: Tensor, s: Steps, schedule: Schedule, first: int = 0) -> tuple:
     """a and b of the step s.  Raises IndexError for a step below `first`, or above S."""
-    return at(schedule.alpha_bar.sqrt(), s, x, first), at((1 - schedule.alpha_bar).sqrt(), s, x)
+    now = schedule.at(s, x, first)
+    return now.signal, now.noise
 
 
 def x0_from_eps(
@@ -121,8 +122,8 @@ def denoiser_of(network, schedule: Schedule, target: str):
         output = network(x_s, s)
         if torch.is_grad_enabled() and x_s.requires_grad and not output.requires_grad:
             raise ValueError(
-                "no gradient here: use the network, not its fast twin, "
-                "outside torch.inference_mode()"
+                "no gradient here: call the network outside torch.no_grad() and "
+                "torch.inference_mode()"
             )
         return to_eps(output, x_s, s, schedule, target)
 

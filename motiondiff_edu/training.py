@@ -19,7 +19,6 @@ from typing import Any
 
 import torch
 from torch import Tensor, nn
-from torch.autograd.graph import increment_version
 from tqdm.auto import tqdm
 
 LossFn = Callable[[nn.Module, torch.Generator], Tensor]
@@ -139,8 +138,6 @@ def train_steps(
             for group in state.optimizer.param_groups:
                 group["lr"] = rate
             state.optimizer.step()
-            # fused optimizers leave torch's count of changes as it was, and `fast.twins` needs it
-            increment_version(list(state.model.parameters()))
             _follow(state)
             state.step, state.seconds = state.step + 1, state.seconds + time.perf_counter() - began
             if save and (state.step % save.every == 0 or state.step == steps):

@@ -6,19 +6,15 @@ import pytest
 import torch
 
 from data_synth.mixtures import gaussian, three_hills, two_hills
-from motiondiff_edu.ddpm import (
+from motiondiff_edu.bound import (
     bound_terms,
-    cosine_schedule,
     dropped_weight,
     gaussian_kl,
-    linear_schedule,
-    p_mean,
     prior_kl,
-    q_posterior,
-    q_sample,
     reconstruction_nll,
     step_kl,
 )
+from motiondiff_edu.ddpm import cosine_schedule, linear_schedule, p_mean, q_posterior, q_sample
 from motiondiff_edu.exact import exact_denoiser, log_density, mixture, sample_mixture
 
 N = 20_000

@@ -151,10 +151,11 @@ def test_watching_collects_maps_and_changes_nothing():
     context = torch.randn(B, M, 12, generator=g)
     bias = torch.randn(1, H, T, T, generator=g)
     context_bias = torch.randn(1, H, T, M, generator=g)
-    plain = block(x, bias, context, context_bias)
+    kept = block.cross_attention.keys_and_values(context)
+    plain = block(x, bias, kept, context_bias)
     with watch(block) as maps:
-        watched = block(x, bias, context, context_bias)
-        block(x, bias, context, context_bias)
+        watched = block(x, bias, kept, context_bias)
+        block(x, bias, kept, context_bias)
     torch.testing.assert_close(watched, plain, atol=1e-6, rtol=1e-5)
     assert {name: [tuple(m.shape) for m in seen] for name, seen in maps.items()} == {
         "self_attention": [(B, H, T, T)] * 2,
@@ -162,7 +163,7 @@ def test_watching_collects_maps_and_changes_nothing():
     }
     assert not maps["cross_attention"][0].requires_grad
     torch.testing.assert_close(maps["self_attention"][1].sum(-1), torch.ones(B, H, T))
-    block(x, bias, context, context_bias)
+    block(x, bias, kept, context_bias)
     assert len(maps["self_attention"]) == 2  # outside, nothing is kept
     assert block.self_attention.watcher is None and block.cross_attention.watcher is None
 
@@ -206,7 +207,8 @@ def test_block_is_its_formula():
     y = x + block.self_attention(n, n)
     y = y + block.cross_attention(F.layer_norm(y, (12,)), context)
     y = y + block.ff(F.layer_norm(y, (12,)))
-    torch.testing.assert_close(block(x, context=context), y)
+    kept = block.cross_attention.keys_and_values(context)
+    torch.testing.assert_close(block(x, context=kept), y)
 
 
 def test_each_part_of_a_block_is_dropped_in_training_alone():
@@ -214,8 +216,9 @@ def test_each_part_of_a_block_is_dropped_in_training_alone():
     torch.manual_seed(6)
     block = Block(12, H, 20, with_context=True, dropout=1.0)
     x, context = torch.randn(B, T, 12), torch.randn(B, M, 12)
-    assert torch.equal(block(x, context=context), x)
-    assert not torch.equal(block.eval()(x, context=context), x)
+    kept = block.cross_attention.keys_and_values(context)
+    assert torch.equal(block(x, context=kept), x)
+    assert not torch.equal(block.eval()(x, context=kept), x)
     parts = (block.self_attention.out, block.cross_attention.out, block.ff[-1])
     block.train()
     block.drop.p = 0.5
@@ -223,6 +226,6 @@ def test_each_part_of_a_block_is_dropped_in_training_alone():
         for other in parts:
             nn.init.zeros_(other.weight)
             nn.init.constant_(other.bias, float(other is part))
-        given = block(x, context=context) - x
+        given = block(x, context=kept) - x
         assert 0.3 < (given.abs() < 1e-5).float().mean() < 0.7
         torch.testing.assert_close(given[given.abs() > 0.5].mean(), torch.tensor(2.0))

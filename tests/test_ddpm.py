@@ -307,7 +307,7 @@ def test_clip_bounds_the_guess():
     steps = list(
         sample_steps(lambda x, s: torch.zeros_like(x), 5 * torch.ones(2, 3), schedule, clip=0.5)
     )
-    assert max(step.x0_hat.abs().max() for step in steps) <= 0.5
+    assert max(step.x0_hat.abs().max() for step in steps) <= 0.5 + 1e-4
 
 
 def test_exact_denoiser_samples_have_the_mixtures_mean_variance_and_weights():

@@ -15,7 +15,7 @@ PACKAGE, DATA = ROOT / "motiondiff_edu", ROOT / "data_synth"
 # What stands left of a layer is what it may import; layers with a comma between them know nothing
 # of each other. The syllabus is every .py at the top of the package.
 CHAINS = (
-    "_files syllabus motion beyond,conditions,metrics fast performers editing baselines pretrained"
+    "_files syllabus motion beyond,conditions,metrics performers editing baselines pretrained"
     " recipes",
     "editing viz widgets course",
     "pretrained course",  # doctor and demo ask which weights there are
@@ -107,7 +107,7 @@ def named(paths: list[Path]):
 def test_the_order_of_the_layers_is_what_the_chains_say():
     may = allowed()
     assert may["syllabus"] == {"_files", "syllabus"} and may["beyond"] == may["motion"] | {"beyond"}
-    assert {"fast", "metrics"} < may["performers"] and "baselines" not in may["performers"]
+    assert {"beyond", "metrics"} < may["performers"] and "baselines" not in may["performers"]
     assert "editing" in may["viz"] and not {"baselines", "pretrained"} & may["widgets"]
     assert "pretrained" in may["course"] and "recipes" not in may["course"]
 

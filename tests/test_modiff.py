@@ -1,5 +1,4 @@
-"""MoDiff's network: the paper's sizes, its inputs, the skip, the fast twin that gives the same
-numbers; and Algorithm 1."""
+"""MoDiff's network: the paper's sizes, its inputs, the skip, what is encoded once; Algorithm 1."""
 
 import math
 from dataclasses import replace
@@ -10,7 +9,6 @@ import torch
 from motiondiff_edu.cross_modal_attention import relative_position_bucket
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.diffusion_dropout import Dropout
-from motiondiff_edu.fast.modiff import FastMoDiff
 from motiondiff_edu.modiff import (
     MODIFF_PAPER,
     MODIFF_SMALL,
@@ -165,62 +163,30 @@ def test_step_embedding_by_hand():
     torch.testing.assert_close(out, torch.tensor([[0.0, 0, 0, 1, 1, 1], wanted]))
 
 
-@pytest.mark.parametrize("config", [TINY, MODIFF_SMALL, MODIFF_PAPER, replace(TINY, skip=False)],
-                         ids=["tiny", "small", "paper", "no skip"])  # fmt: skip
-def test_fast_twin_gives_the_same_numbers(config):
-    plain = lively(config)
-    fast = FastMoDiff(plain)
-    x_s, _, past, control = inputs(config, batch=2)
-    context = fast.encode(past, control)
-    for step in (1, config.S // 2, config.S):
-        with torch.no_grad():
-            wanted = plain(x_s, torch.full((2,), step), past, control)
-        torch.testing.assert_close(
-            fast.denoise(x_s, torch.full((2,), step), context), wanted, atol=1e-5, rtol=1e-5
-        )
-        torch.testing.assert_close(fast.denoise(x_s, step, context), wanted, atol=1e-5, rtol=1e-5)
+@pytest.mark.parametrize("config", [TINY, MODIFF_SMALL, replace(TINY, skip=False)],
+                         ids=["tiny", "small", "no skip"])  # fmt: skip
+@torch.no_grad()
+def test_a_window_encoded_once_is_decoded_at_every_step(config):
+    model, (x_s, _, past, control) = lively(config), inputs(config)
+    memory = model.encode(past, control)
+    for s in (torch.full((3,), 1), torch.full((3,), config.S), torch.tensor([3, 20, 11])):
+        assert torch.equal(model.decode(x_s, s, memory), model(x_s, s, past, control))
 
 
-@pytest.mark.parametrize("skip", [True, False])
-def test_fast_twin_takes_another_step_for_each_row(skip):
-    plain = lively(replace(TINY, skip=skip))
-    fast, (x_s, _, past, control) = FastMoDiff(plain), inputs(TINY)
-    s = torch.tensor([3, 20, 11])
-    with torch.no_grad():
-        wanted = plain(x_s, s, past, control)
-    torch.testing.assert_close(
-        fast.denoise(x_s, s, fast.encode(past, control)), wanted, atol=1e-5, rtol=1e-5
-    )
+@torch.no_grad()
+def test_a_memory_belongs_to_its_past_and_its_control():
+    model, (x_s, s, past, control) = lively(TINY), inputs(TINY)
+    wanted = model.decode(x_s, s, model.encode(past, control))
+    for other in ((past + 1, control), (past, control + 1)):
+        assert not torch.allclose(model.decode(x_s, s, model.encode(*other)), wanted, atol=1e-4)
 
 
-def test_fast_twin_keeps_the_context_it_was_given():
-    """Another past or control needs another context: the kept one must not leak into it."""
-    fast = FastMoDiff(lively(TINY))
-    x_s, _, past, control = inputs(TINY)
-    first = fast.encode(past, control)
-    second = fast.encode(past, control + 1)
-    before = fast.denoise(x_s, 5, first)
-    assert not torch.allclose(fast.denoise(x_s, 5, second), before, atol=1e-4)
-    assert torch.equal(fast.denoise(x_s, 5, first), before)
-
-
-def test_fast_twin_refuses_the_same_shapes():
-    _, _, past, control = inputs(TINY)
-    with pytest.raises(ValueError, match="past poses"):
-        FastMoDiff(lively(TINY)).encode(past[:, 1:], control)
-
-
-def test_fast_twin_stays_as_it_was_built_and_leaves_the_model_in_training():
-    """Half of its weights kept and half shared would be a network that nobody trained."""
-    model = lively(TINY).train()
-    fast = FastMoDiff(model)
-    assert model.training
-    x_s, _, past, control = inputs(TINY)
-    before = fast.denoise(x_s, 5, fast.encode(past, control))
-    with torch.no_grad():
-        for weight in model.parameters():
-            weight.add_(0.3)
-    assert torch.equal(fast.denoise(x_s, 5, fast.encode(past, control)), before)
+@torch.no_grad()
+def test_rows_of_a_memory_are_those_of_the_samples():
+    model, (x_s, s, past, control) = lively(TINY), inputs(TINY)
+    chosen = torch.tensor([2, 0, 2, 1])
+    some = model.decode(x_s[chosen], s[chosen], model.encode(past, control).rows(chosen))
+    torch.testing.assert_close(some, model(x_s, s, past, control)[chosen])
 
 
 def test_the_wiring_by_hand():
@@ -266,7 +232,7 @@ def test_the_wiring_by_hand():
             None
         ]
         for block in model.decoder:
-            x = block(x, own, memory, other)
+            x = block(x, own, block.cross_attention.keys_and_values(memory), other)
         wanted = model.head(x) + model.skip[7] * x_s
         torch.testing.assert_close(model(x_s, s, past, control), wanted, atol=1e-6, rtol=1e-5)
 

@@ -1,4 +1,4 @@
-"""MoFusion's U-Net: lengths, the batch, time in seconds, and its fast twin."""
+"""MoFusion's U-Net: lengths, the batch, time in seconds, and what is encoded once."""
 
 from dataclasses import replace
 
@@ -7,7 +7,6 @@ import torch
 import torch.nn.functional as F
 
 from motiondiff_edu.cross_modal_attention import angles_of, rotary
-from motiondiff_edu.fast.mofusion import FastMoFusion
 from motiondiff_edu.modiff import step_embedding
 from motiondiff_edu.mofusion import (
     MOFUSION_FULL,
@@ -188,28 +187,14 @@ def test_without_music_the_motion_attends_to_itself():
 
 @torch.no_grad()
 @pytest.mark.parametrize("change", [{}, {"skip": True, "target": "eps"}, {"music_layers": 0}])
-def test_fast_twin_gives_the_same_numbers(change):
+def test_a_song_encoded_once_is_decoded_at_every_step(change):
     model = shaken(MoFusionConfig(**{**TINY.as_dict(), **change}))
-    fast = FastMoFusion(model)
-    mel, times = music(3, 64)
-    x, song = torch.randn(3, 37, 7), fast.listen(mel, times, 37)
-    for s in (1, 15, 30):
-        labels = torch.full((3,), s)
-        plain = model(x, labels, model.listen(mel, times))
-        for steps in (labels, s):
-            torch.testing.assert_close(
-                fast.denoise(x, steps, song), plain, atol=1e-5 * plain.std(), rtol=1e-4
-            )
-    labels = torch.tensor([2, 9, 28])
-    plain = model(x, labels, model.listen(mel, times))
-    torch.testing.assert_close(
-        fast.denoise(x, labels, song), plain, atol=1e-5 * plain.std(), rtol=1e-4
-    )
-
-
-def test_fast_twin_needs_music():
-    with pytest.raises(ValueError, match="plain"):
-        FastMoFusion(MoFusion(MoFusionConfig(**{**TINY.as_dict(), "C": 0})))
+    heard, x = model.listen(*music(3, 64)), torch.randn(3, 37, 7)
+    memory = model.encode(heard, 37)
+    for s in (torch.full((3,), 1), torch.full((3,), 30), torch.tensor([2, 9, 28])):
+        torch.testing.assert_close(model.decode(x, s, memory), model(x, s, heard))
+    other = model.encode(model.listen(*music(3, 64, seed=2)), 37)
+    assert not torch.allclose(model.decode(x, s, other), model(x, s, heard), atol=1e-4)
 
 
 @pytest.mark.parametrize("stride, dilation", [(1, 1), (2, 1), (1, 4)])

@@ -16,7 +16,7 @@ import torch
 from data_synth.mixtures import gaussian
 from data_synth.walking import walk
 from data_synth.walking.write import main as write_walks
-from motiondiff_edu import ddpm, exact, prediction
+from motiondiff_edu import bound, ddpm, exact, prediction
 from motiondiff_edu.conditions.control import joystick
 from motiondiff_edu.metrics.adherence import adherence
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
@@ -75,7 +75,7 @@ MISTAKES = {
     "one step of DDPM": (lambda: ddpm.rescaled_ddpm_schedule(1), "1 steps are too few"),
     "twenty steps of DDPM": (lambda: ddpm.rescaled_ddpm_schedule(20), "20 steps are too few"),
     "the last step as a KL": (
-        lambda: ddpm.step_kl(X, X, 1, X, SCHEDULE),
+        lambda: bound.step_kl(X, X, 1, X, SCHEDULE),
         "s = 1: steps must be 2 to 20",
     ),
     "pieces without a frame": (

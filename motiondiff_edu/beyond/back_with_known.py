@@ -29,7 +29,7 @@ class MaskedWalker(AnyWalker, Protocol):
 
     schedule: Schedule
 
-    def denoiser(self, past: Tensor, control: Tensor, fast: bool = True) -> Denoiser: ...
+    def denoiser(self, past: Tensor, control: Tensor) -> Denoiser: ...
 
 
 def blended_way_back(
@@ -67,7 +67,7 @@ def masked_way_back(
             "past. Use blended_way_back"
         )
     given, ahead = (walker.pose_scaler.transform(x.float()) for x in (given, ahead))
-    network = walker.denoiser(ahead, walker.control_scaler.transform(control.float()), fast=False)
+    network = walker.denoiser(ahead, walker.control_scaler.transform(control.float()))
     start = draw(given, rollout.generator)
     loop = inpaint_steps(
         guided(network, schedule, given, known, WEIGHT, MOVES),

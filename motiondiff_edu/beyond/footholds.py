@@ -21,7 +21,7 @@ from jaxtyping import Float, Int
 from torch import Tensor, nn
 
 from ..diffusion_dropout import changed
-from ..modiff import MoDiff, MoDiffConfig
+from ..modiff import Memory, MoDiff, MoDiffConfig
 from ..motion.scaler import Scaler
 from ..motion.skeleton import J, joint_index
 
@@ -82,12 +82,12 @@ class FootholdConfig(MoDiffConfig):
 class Standing:
     """The memory of past and control, and the standardised COLUMNS of feet that stay in place."""
 
-    memory: Float[Tensor, "B M width"]
+    memory: Memory
     held: Float[Tensor, "B T_p K"]
 
-    def index_select(self, dim: int, index: Int[Tensor, "N"]) -> "Standing":
-        """Select samples of both, as torch.index_select does."""
-        return Standing(*(part.index_select(dim, index) for part in (self.memory, self.held)))
+    def rows(self, chosen: Int[Tensor, "N"]) -> "Standing":
+        """Both for some samples of the batch."""
+        return Standing(self.memory.rows(chosen), self.held[chosen])
 
 
 class FootholdMoDiff(MoDiff):
@@ -134,7 +134,7 @@ class FootholdMoDiff(MoDiff):
         self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"], context: Standing
     ) -> Float[Tensor, "B T_p D"]:
         """x0_hat: free for most joints, between free and held for the feet."""
-        x = self.attend(self.embed(x_s, s), context.memory)
+        x = self.attend(self.embed(x_s, s, context.memory), context.memory)
         return self.placed(self.head(x), self.gate(x), context.held)
 
     def placed(

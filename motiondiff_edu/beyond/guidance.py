@@ -35,7 +35,7 @@ def guided(
 ) -> Denoiser:
     """The denoiser with `guided_guess` for its x0_hat; each move costs about as much as a call.
 
-    `denoise` must be differentiable: a network, not its fast twin.  Notebook: 15
+    `denoise` must be differentiable.  Notebook: 15
     """
 
     def steered(x_s: Tensor, s: Tensor) -> Tensor:

@@ -14,7 +14,8 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from ..mofusion import CrossAttentionBlock, MoFusion, MoFusionConfig, Music, View
+from ..cross_modal_attention import KeysValues
+from ..mofusion import CrossAttentionBlock, Level, Memory, MoFusion, MoFusionConfig, Music
 
 LEVELS = 2  # the middle, and the level above it on both sides
 DEPTH = 4  # further layers in the middle
@@ -42,30 +43,35 @@ class SelfAttendingMoFusion(MoFusion):
         ask = CrossAttentionBlock(width, config.heads, context)
         return nn.ModuleDict({"ask": ask, "own": CrossAttentionBlock(width, config.heads, width)})
 
+    def _hear(self, block, music: Music, level: Level) -> dict[nn.Module, KeysValues]:
+        heard = super()._hear(block, music, level)
+        for layer in block["deep"] if "deep" in block else ():
+            heard |= super()._hear(layer, music, level)
+        return heard
+
     def _block(
-        self, block, h: Float[Tensor, "B T W"], step: Float[Tensor, "B E"], music: Music | None,
-        view: View,
+        self, block, h: Float[Tensor, "B T W"], step: Float[Tensor, "B E"], level: Level,
+        memory: Memory,
     ) -> Float[Tensor, "B T W2"]:  # fmt: skip
-        h = super()._block(block, h, step, music, view)
+        h = super()._block(block, h, step, level, memory)
         if "own" not in block:
             return h
-        h = h + block["when"](from_both_ends(view))
-        times, _ = view.angles[h.shape[-1]]
+        h = h + block["when"](from_both_ends(level))
+        times, _ = level.angles_of(block["own"])
         bias = None
-        if not view.mask.all():  # padding is not seen
-            bias = (1e4 * (view.mask - 1)).mT[:, None].expand(-1, -1, h.shape[1], -1)
+        if not level.mask.all():  # padding is not seen
+            bias = (1e4 * (level.mask - 1)).mT[:, None].expand(-1, -1, h.shape[1], -1)
         h = block["own"](h, None, bias, (times, times))
         for layer in block["deep"] if "deep" in block else ():
-            tokens = None if music is None else music.tokens
-            h = layer["ask"](h, tokens, view.bias, view.angles[h.shape[-1]])
+            h = memory.read(layer["ask"], h, level)
             h = layer["own"](h, None, bias, (times, times))
         return h
 
 
-def from_both_ends(view: View) -> Float[Tensor, "#B T 32"]:
+def from_both_ends(level: Level) -> Float[Tensor, "#B T 32"]:
     """Sines and cosines of the seconds since the first frame, and until the last one."""
-    since = view.times.expand(view.mask.shape[:2])
-    last = (since * view.mask[..., 0]).amax(1, keepdim=True)
+    since = level.times.expand(level.mask.shape[:2])
+    last = (since * level.mask[..., 0]).amax(1, keepdim=True)
     pace = torch.logspace(0, 1, CURVES, FASTEST / SLOWEST, device=since.device) * SLOWEST
     angles = 2 * torch.pi * torch.stack([since, last - since], -1)[..., None] * pace
     return torch.cat([angles.sin(), angles.cos()], -1).flatten(2)

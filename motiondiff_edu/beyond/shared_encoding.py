@@ -60,7 +60,7 @@ class SharedEncoding:
         row[others] = len(first) + torch.arange(len(others))
         rows = torch.cat([first, others])
         memory = self.model.encode(*(part[rows] for part in inputs))
-        return memory.index_select(0, row.to(inputs[0].device))
+        return memory.rows(row.to(inputs[0].device))
 
     def decode(self, x_s, s, memory) -> Float[Tensor, "B T_p D"]:
         return self.model.decode(x_s, s, memory)

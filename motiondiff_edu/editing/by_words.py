@@ -27,6 +27,7 @@ from ..motion.root_frame import estimate_root
 from ..motion.size import leg_size
 from ..motion.skeleton import HIPS, TOES, J
 from ..performers.mover import ETA, STEPS, Mover
+from ..performers.performer import Watch
 from ..performers.text_mofusion import Texts
 from .masks import checked_given
 
@@ -45,6 +46,7 @@ def edit_by_words(
     samples: int = 1,
     steps: int = STEPS,
     generator: Generators | None = None,
+    watch: Watch = iter,
 ) -> Float[np.ndarray, "samples T 21 3"]:
     """Motions (metres, 20 frames/s) that do what `text` says, made out of this motion.
 
@@ -53,6 +55,7 @@ def edit_by_words(
               nothing is masked
     strength  above 0, up to 1; with 1 nothing but the known part is left of the motion
     steps     of DDIM for the whole way; a smaller strength takes fewer
+    watch     gets each sampling loop, and shows how far it is
     Without a `generator` the seed is 0. The first frame stays where it was, facing the same way.
     While the pelvis is known from the first frame on, known joints come back bit by bit.
     Raises TextError for a text that cannot be read, ValueError for a strength out of range, for
@@ -69,15 +72,16 @@ def edit_by_words(
     given, schedule = mover.units_of(positions / size).expand(samples, -1, -1), mover.schedule
     held = columns(torch.from_numpy(mask)).to(given.device).expand(given.shape)
     start = q_sample(given, ways[0], schedule, draw(given, generator))
-    plan = _plan(mover, positions / size, mask, texts, steps, generator) if mover.can_plan else None
-    denoise = mover.denoiser(texts, 1.0, plan)
+    plan = None
+    if mover.can_plan:
+        plan = _plan(mover, positions / size, mask, texts, steps, generator, watch)
+    denoise = mover.denoiser(texts, len(positions), plan=plan)
     if held.any():
         denoise = blended(denoise, schedule, given, held, fade=FADE)
     loop = inpaint_steps(
         denoise, start, schedule, given, held, steps=ways, eta=ETA, generator=generator
     )
-    with torch.inference_mode():
-        made = size * mover.positions_of(final(loop).x_s).double().cpu().numpy()
+    made = size * mover.positions_of(final(watch(loop)).x_s).double().cpu().numpy()
     on_its_path = np.logical_and.accumulate(mask[:, HIPS])[:, None]
     same = (mask & on_its_path)[..., None]
     return np.where(same, positions, at_the_start_of(positions, made))
@@ -90,17 +94,17 @@ def _plan(
     texts: Texts,
     steps: int,
     generator: Generators,
+    watch: Watch = iter,
 ) -> Float[Tensor, "samples T 22"]:
     """Timelines for the texts that go with what is known of the motion."""
     seen, held = torch.from_numpy(recognised_timeline(positions)).float(), kept_columns(known)
     given = mover.plan_scaler.transform(seen.to(mover.device)).expand(len(texts), -1, -1)
     held = held.to(mover.device).expand_as(given)
     loop = inpaint_steps(
-        mover.plan_denoiser(texts), draw(given, generator), mover.schedule, given, held,
-        steps=min(steps, mover.schedule.S), eta=ETA, generator=generator,
+        mover.plan_denoiser(texts, len(positions)), draw(given, generator), mover.schedule, given,
+        held, steps=min(steps, mover.schedule.S), eta=ETA, generator=generator,
     )  # fmt: skip
-    with torch.inference_mode():
-        return timeline.tidied(mover.plan_scaler.inverse(final(loop).x_s))
+    return timeline.tidied(mover.plan_scaler.inverse(final(watch(loop)).x_s))
 
 
 def recognised_timeline(positions: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 22"]:

@@ -26,6 +26,7 @@ from ..motion.dance_frame import GROUND, PATH, Place, heading, placed_features, 
 from ..motion.directions import ARMS, UPLEGS
 from ..motion.scaler import Scaler
 from ..motion.skeleton import HIPS, J
+from ..performers.performer import Watch
 from .edit import Make
 from .masks import checked_given, known_columns
 
@@ -79,7 +80,7 @@ class AnyDancer(Protocol):
     schedule: Schedule
     motion_scaler: Scaler
 
-    def denoiser(self, mel: Tensor | None, frames: int, fast: bool = True) -> Denoiser: ...
+    def denoiser(self, mel: Tensor | None, frames: int) -> Denoiser: ...
 
 
 def inbetween(
@@ -92,6 +93,7 @@ def inbetween(
     steps: int = 50,
     departures: Departures = OURS,
     generator: Generators | None = None,
+    watch: Watch = iter,
 ) -> Float[np.ndarray, "samples T 21 3"]:
     """Generate what is not known of a motion (metres, 20 frames/s), `samples` times.
 
@@ -99,6 +101,7 @@ def inbetween(
     Known entries come back bit by bit as they were given; the others may be NaN. For the network
     the motion is moved and turned, so that it starts at its first known pose (`seen_from`). Without
     a `generator` the seed is 0.
+    `watch` gets the sampling loop, and shows how far it is.
     `departures`: `OURS`, or `PAPER` for masked sampling as printed. Where nothing is known the
     result is a plain sample in both cases.
     Raises ValueError where a joint is given without the pelvis, or is given but NaN or infinite,
@@ -129,7 +132,8 @@ def inbetween(
         denoise = steered(dancer, music, held, departures)
     visited = resampled(timesteps(schedule.S, steps), departures.resample)
     loop = inpaint_steps(denoise, start, schedule, *held, steps=visited, generator=generator)
-    x0 = final(loop).x_s if shown is None else shown.whole(departures.remainder * final(loop).x_s)
+    x0 = final(watch(loop)).x_s
+    x0 = x0 if shown is None else shown.whole(departures.remainder * x0)
     poses = to_positions(view.leave(dancer.motion_scaler.inverse(x0)))
     made = place.leave(poses.double().cpu().numpy())
     whole = np.where(known[..., None], positions, made)
@@ -168,7 +172,7 @@ def steered(
     `held`: the given entries, and which they are.
     """
     guidance = departures.guidance if held[1].any() else 0.0
-    denoise = dancer.denoiser(mel, held[0].shape[1], fast=not guidance)
+    denoise = dancer.denoiser(mel, held[0].shape[1])
     if guidance:
         denoise = guided(denoise, dancer.schedule, *held, guidance)
     if departures.blend is not None:

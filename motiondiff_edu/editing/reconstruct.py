@@ -7,8 +7,8 @@ windows. The way back is conditioned on the known joints, so that a hole joins o
 Source: MoDiff III-E; the overlapping windows are ours.
 """
 
-import math
 import warnings
+from collections.abc import Callable, Iterable
 
 import numpy as np
 import torch
@@ -42,11 +42,13 @@ def reconstruct(
     *,
     generator: torch.Generator,
     rounds: int = ROUNDS,
+    watch: Callable[[Iterable[int]], Iterable[int]] = iter,
 ) -> Float[np.ndarray, "T 21 3"]:
     """Reconstruct the joints that are not known, in a motion in the world (metres, 20 frames/s).
 
     Unknown joints can be NaN; known joints come back unchanged, bit by bit. The control comes from
-    the pelvis and from the direction of hips and shoulders, smoothed.
+    the pelvis and from the direction of hips and shoulders, smoothed. `watch` gets the loop over
+    the rounds, and shows how far it is.
     Where the figure is faster than in the walker's training, the control stays at that limit, and a
     MotionWarning says where; so does one where known joints are unlike those of the training.
     Raises MotionError if a pelvis is missing, if no frame shows which way the figure faces, if
@@ -64,7 +66,7 @@ def reconstruct(
     steer = within_training(walker, control, known)
     steer = torch.from_numpy(np.concatenate([steer, np.repeat(steer[-1:], T_h, axis=0)]))
     rollout = Rollout(walker, generator, STEPS)
-    for _ in range(rounds):
+    for _ in watch(range(rounds)):
         found = _once(rollout, guess, mask, steer, firsts)
         joints = torch.where(mask, given, found).unflatten(-1, (J, 3)).numpy()
         guess = torch.from_numpy(steady_bones(joints, known, lengths)).flatten(1)
@@ -112,13 +114,6 @@ def warn_of_unlike(
             MotionWarning,
             stacklevel=3,
         )
-
-
-def evaluations(walker: AnyWalker, known: Bool[np.ndarray, "T 21"], rounds: int = ROUNDS) -> int:
-    """How often `reconstruct` runs the network, for a progress bar.  Raises as `reconstruct`."""
-    T_h, T_p = walker.config.T_h, walker.config.T_p
-    batches = math.ceil(len(_windows(known, T_h)) / BATCH)
-    return batches * rounds * 2 * math.ceil(T_h / T_p) * STEPS
 
 
 def _once(

@@ -1,25 +1,28 @@
-"""A progress bar for long computations: `with bar(100, "walking") as step: ...`."""
+"""A progress bar around a loop: `for step in bar("dancing", 50)(loop): ...`."""
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
+from typing import TypeVar
 
 from tqdm.auto import tqdm
 
 DELAY = 1.0  # seconds before it appears: a shorter computation shows no bar
+Record = TypeVar("Record")
 
 
-@contextmanager
-def bar(total: int, what: str, shown: bool = True) -> Iterator[Callable[[], object]]:
-    """Yield a function to call after each of `total` steps; the bar disappears at the end.
+def bar(
+    what: str, total: int | None = None, shown: bool = True
+) -> Callable[[Iterable[Record]], Iterator[Record]]:
+    """A function that gives a loop a bar with these words; the bar disappears at the end.
 
-    No bar is shown when the output is not a terminal.
+    `total`: the number of the loop's records. No bar is shown when the output is not a terminal.
     """
-    with tqdm(
-        total=total,
+    return partial(
+        tqdm,
         desc=what,
+        total=total,
         delay=DELAY,
         mininterval=0.5,
         leave=False,
         disable=None if shown else True,
-    ) as progress:
-        yield progress.update
+    )

@@ -56,7 +56,7 @@ def attention_on_words(
     missing plan, or a mover that reads by CLIP.
     """
     words, ids = _read(mover, text, s)
-    denoise = mover.denoiser(ids, plan=plan)
+    denoise = mover.denoiser(ids, len(positions), plan=plan)
     return WordMaps(words, _seen(mover, denoise, mover.units_of(positions)[None], s, generator))
 
 
@@ -72,7 +72,8 @@ def attention_of_the_plan(
     """The same for the network that plans, while this timeline, noised to step s, is denoised."""
     words, ids = _read(mover, text, s)
     x0 = mover.plan_scaler.transform(plan.to(mover.device))
-    return WordMaps(words, _seen(mover, mover.plan_denoiser(ids), x0, s, generator))
+    denoise = mover.plan_denoiser(ids, plan.shape[1])
+    return WordMaps(words, _seen(mover, denoise, x0, s, generator))
 
 
 def _read(mover: Mover, text: str, s: int) -> tuple[tuple[str, ...], Texts]:

@@ -21,21 +21,18 @@ from ..beyond.turning_frame import View
 from ..conditions.audio_files import SILENT, AudioError, samples_of
 from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, fingerprint, frame_times, log_mel
 from ..ddpm import Denoiser, Generators, Schedule, draw
-from ..fast.mofusion import FastMoFusion
-from ..fast.twins import watched
 from ..mofusion import MoFusion, MoFusionConfig, Music
 from ..motion.checks import checked_guidance, checked_samples, checked_seconds, checked_steps
 from ..motion.dance_frame import to_positions
 from ..motion.motion import Motion, MotionWarning
+from ..motion.progress import bar
 from ..motion.retarget import SHORTEST
 from ..motion.scaler import Scaler
-from ..prediction import denoiser_of
 from .dance_windows import FPS, mel_frames
 from .finished import finished_performance
 from .keyframe_mofusion import KeyframeMoFusion
 from .networks import register
-from .performer import Performer, generators, sampled, without_gradients
-from .with_bar import with_bar
+from .performer import Performer, Watch, evaluating, generators, sampled
 
 STEPS, ETA = 50, 1.0  # defaults of DDIM; with less fresh noise, dances to a song differ less
 # chosen on other songs than those of docs/RESULTS.md
@@ -47,7 +44,7 @@ FARTHEST = 5.0
 QUIET, LOUD = 0.1, 0.5  # loudest sample of a song that is made louder, and what it gets
 
 
-register("dancer", MoFusion, MoFusionConfig, fast=FastMoFusion)
+register("dancer", MoFusion, MoFusionConfig)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -90,16 +87,14 @@ class Dancer(Performer):
         mel: Float[Tensor, "B M C"] | None,
         frames: int,
         guidance: float = 1.0,
-        fast: bool = True,
     ) -> Denoiser:
         """`denoise(x_s, s) -> eps_hat` for this music (None for a network without music).
 
-        It works in the network's units. The x0_hat of an eps network is clamped to FARTHEST.
+        It works in the network's units. The music is encoded here, once; each call decodes. The
+        x0_hat of an eps network is clamped to FARTHEST.
 
         `guidance`: w of `beyond.classifier_free`; 1 is the conditional network. Above 1 it acts
         between the strongest and the weakest noise (GUIDED).
-        `fast=True` uses the fast twin if there is one, unless `watch` collects the attention;
-        the twin cannot be differentiated.
         Raises ValueError for a network with music but no `mel`, or the reverse, and for guidance of
         a network that was not made for it.
         """
@@ -111,19 +106,12 @@ class Dancer(Performer):
             )
         guidance = self._guidance(guidance)
         if mel is None:
-            return self._as_eps(self._evaluated)
-        twin = self.fast if fast and not watched(self.model) else None
-        music = self.model.listen(*self.mel_input(mel, frames))
-
-        def network(music: Music):
-            if twin is None:
-                return lambda x_s, s: self._evaluated(x_s, s, music)
-            song = twin.context(music, frames)
-            return lambda x_s, s: twin.denoise(x_s, s, song)
-
+            return self._clamped(self._to(None, frames))
+        with torch.no_grad():
+            music = self.model.listen(*self.mel_input(mel, frames))
         if guidance == 1:
-            return self._as_eps(network(music))
-        to_music, to_nothing = (self._unclamped(network(one)) for one in (music, without(music)))
+            return self._clamped(self._to(music, frames))
+        to_music, to_nothing = (self._to(one, frames) for one in (music, without(music)))
         guided = guided_by_condition(to_music, to_nothing, guidance)
         if guidance > 1:
             guided = while_between(guided, to_music, self.schedule, *GUIDED)
@@ -188,7 +176,7 @@ class Dancer(Performer):
         Raises ValueError for a network that was not made for it.
         """
         self._must_see()
-        return self._as_eps(lambda r_s, s: self._evaluated(r_s, s, shown))
+        return self._clamped(self._denoiser(self.model, shown))
 
     def _must_see(self) -> None:
         if not self.can_be_shown:
@@ -196,11 +184,9 @@ class Dancer(Performer):
                 f"{type(self.model).__name__} is not made to see what is given: use `denoiser`"
             )
 
-    def _as_eps(self, network) -> Denoiser:
-        return self._clamped(self._unclamped(network))
-
-    def _unclamped(self, network) -> Denoiser:
-        return denoiser_of(network, self.schedule, self.config.target)
+    def _to(self, music: Music | None, frames: int) -> Denoiser:
+        """The denoiser for music that the network has listened to already."""
+        return self._denoiser(self.model.decode, self._encoded(self.model, music, frames))
 
     def _clamped(self, denoise: Denoiser) -> Denoiser:
         if self.config.target != "eps":
@@ -267,10 +253,14 @@ class Dancer(Performer):
             heard = audio * LOUD / peak
         mel = log_mel(heard)
         draws = generators(seed, count, *fingerprint(mel))
-        with with_bar(self, steps or self.schedule.S, "dancing", progress) as one:
-            songs = mel.expand(count, -1, -1)
-            how = {"generator": draws, "steps": steps, "guidance": guidance}
-            dances = one.dance_mel(songs, frames, **how)
+        dances = self.dance_mel(
+            mel.expand(count, -1, -1),
+            frames,
+            generator=draws,
+            steps=steps,
+            guidance=guidance,
+            watch=bar("dancing", (steps or self.schedule.S) + 1, progress),
+        )
         dances = dances.double().cpu().numpy()
         made = [
             Motion(
@@ -284,7 +274,7 @@ class Dancer(Performer):
         ]
         return made if samples > 1 else made[0]
 
-    @without_gradients
+    @torch.no_grad()
     def dance_mel(
         self,
         mel: Float[Tensor, "B M C"],
@@ -295,6 +285,7 @@ class Dancer(Performer):
         eta: float = ETA,
         guidance: float | None = None,
         start: Float[Tensor, "B T D"] | None = None,
+        watch: Watch = iter,
     ) -> Float[Tensor, "B T 21 3"]:
         """Dance to log-Mel spectrograms (`conditions.music.log_mel`), one dance each.
 
@@ -305,6 +296,7 @@ class Dancer(Performer):
                 posterior's variance
         guidance as in `dance`
         start   the noise to begin with (default: drawn); pass the same noise to compare two songs
+        watch   gets the sampling loop, and shows how far it is
         Raises ValueError for more frames than the music has, and as `denoiser`.  Notebook: 12
         """
         longest = int((mel.shape[1] - 1) / FRAMES_PER_SECOND * FPS) + 1
@@ -319,7 +311,7 @@ class Dancer(Performer):
         denoise = self.denoiser(mel, frames, guidance)
         where = self.motion_scaler.mean.new_empty(len(mel), frames, self.config.D)
         x_S = draw(where, generator) if start is None else start.to(self.device)
-        x0 = sampled(denoise, x_S, self.schedule, steps, eta, generator)
+        x0 = sampled(denoise, x_S, self.schedule, steps, eta, generator, watch)
         return to_positions(self.motion_scaler.inverse(x0))
 
     def _regress(self, mel: Float[Tensor, "B M C"], frames: int) -> Float[Tensor, "B T 21 3"]:
@@ -327,5 +319,6 @@ class Dancer(Performer):
         music = self.model.listen(*self.mel_input(mel, frames))
         nothing = torch.zeros(len(mel), frames, self.config.D, device=self.device)
         s = torch.zeros(len(mel), dtype=torch.long, device=self.device)
-        out = self._evaluated(nothing, s, music)
+        with evaluating(self.model):
+            out = self.model(nothing, s, music)
         return to_positions(self.motion_scaler.inverse(out))

@@ -11,7 +11,6 @@ import torch
 from jaxtyping import Bool, Float
 from torch import Tensor, nn
 
-from ..fast.mofusion import FastMoFusion
 from ..mofusion import MoFusion, MoFusionConfig, Music
 from .ear import Ear, EarConfig
 from .networks import register
@@ -71,4 +70,4 @@ class HearingMoFusion(WithEar, MoFusion):
         self.with_ear(config.ear, self.music.project.out_features)
 
 
-register("dancer", HearingMoFusion, HearingConfig, fast=FastMoFusion)
+register("dancer", HearingMoFusion, HearingConfig)

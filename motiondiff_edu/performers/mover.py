@@ -6,7 +6,6 @@ Notebook: 16, 17
 
 import copy
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -23,16 +22,15 @@ from ..ddpm import Denoiser, Generators, Schedule, draw
 from ..motion.checks import checked_guidance, checked_samples, checked_seconds, checked_steps
 from ..motion.motion import Motion, MotionWarning
 from ..motion.moving_frame import D, to_features, to_positions
+from ..motion.progress import bar
 from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 from ..motion.skeleton import BONE_LENGTHS
-from ..prediction import denoiser_of
 from .described_windows import GRID
 from .finished import finished_performance
-from .performer import Performer, evaluating, generators, sampled, without_gradients
+from .performer import Performer, Watch, evaluating, generators, sampled
 from .planned_mofusion import PlannedMoFusion
 from .text_mofusion import Texts
-from .with_bar import with_bar
 
 STEPS, ETA = 50, 0.5  # defaults of DDIM
 SECONDS = 6.0
@@ -81,15 +79,16 @@ class Mover(Performer):
     def denoiser(
         self,
         ids: Texts,
+        frames: int,
         guidance: float = 1.0,
         plan: Float[Tensor, "#B T 22"] | Float[np.ndarray, "#B T 22"] | None = None,
-        fast: bool = True,
     ) -> Denoiser:
-        """`denoise(x_s, s) -> eps_hat` of motions for these texts (`reader.encoded`).
+        """`denoise(x_s, s) -> eps_hat` of motions of `frames` frames for texts (`reader.encoded`).
+
+        The texts are encoded here, once; each call decodes.
 
         `guidance`: w of `beyond.classifier_free`; 1 is the conditional network.
         `plan`: a timeline for each (`plans`), which a network that plans needs.
-        `fast` is there as for walkers and dancers; movers have no fast twin.
         Raises ValueError for a network that plans without a plan, or a plan for another, or of
         another shape.
         """
@@ -97,25 +96,12 @@ class Mover(Performer):
             what = "needs one: see `plans`" if plan is None else "takes none"
             raise ValueError(f"plan: this mover {what}")
         given = () if plan is None else (self.plan_scaler.transform(self._plan(plan, len(ids))),)
+        plans = (one.expand(len(ids), -1, -1) for one in given)
+        return self._guided(self.model, ids, frames, guidance, *plans)
 
-        def network(context):
-            plans = (one.expand(len(ids), -1, -1) for one in given)
-            return lambda x_s, s, plans=tuple(plans): self._evaluated(x_s, s, context, *plans)
-
-        return self._guided(ids, guidance, self.model.listen, network)
-
-    def plan_denoiser(self, ids: Texts, guidance: float = 1.0, fast: bool = True) -> Denoiser:
+    def plan_denoiser(self, ids: Texts, frames: int, guidance: float = 1.0) -> Denoiser:
         """The same for timelines in the network's units, of a network that plans."""
-        planner = self.model.planner
-
-        def network(context):
-            def evaluated(x_s, s):
-                with evaluating(self.model):
-                    return planner(x_s, s, context)
-
-            return evaluated
-
-        return self._guided(ids, guidance, planner.listen, network)
+        return self._guided(self.model.planner, ids, frames, guidance)
 
     def _plan(self, plan: Tensor | np.ndarray, texts: int) -> Float[Tensor, "#B T 22"]:
         """A plan as the network takes it.  Raises ValueError for one of another shape."""
@@ -127,23 +113,28 @@ class Mover(Performer):
             )
         return made
 
-    def _guided(self, ids: Texts, guidance: float, listen: Callable, network: Callable) -> Denoiser:
+    def _guided(
+        self, network: nn.Module, ids: Texts, frames: int, guidance: float, *plans: Tensor
+    ) -> Denoiser:
         """The denoiser of a network for these texts, away from no text if guidance is not 1."""
         guidance = checked_guidance(guidance)
-        texts = [ids] if guidance == 1 else [ids, self.reader.encoded([()] * len(ids))]
-        with evaluating(self.model):
-            contexts = [listen(one.to(self.device)) for one in texts]
-        conditional, *nothing = (
-            denoiser_of(network(context), self.schedule, self.config.target) for context in contexts
-        )
-        return guided_by_condition(conditional, nothing[0], guidance) if nothing else conditional
+
+        def denoiser(texts: Texts) -> Denoiser:
+            with evaluating(network), torch.no_grad():
+                memory = network.encode(network.listen(texts.to(self.device)), frames)
+            return self._denoiser(network.decode, memory, *plans)
+
+        if guidance == 1:
+            return denoiser(ids)
+        nothing = self.reader.encoded([()] * len(ids))
+        return guided_by_condition(denoiser(ids), denoiser(nothing), guidance)
 
     @property
     def can_plan(self) -> bool:
         """Whether a timeline is generated before the motion (`performers/planned_mofusion.py`)."""
         return isinstance(self.model, PlannedMoFusion)
 
-    @without_gradients
+    @torch.no_grad()
     def plans(
         self,
         ids: Texts,
@@ -154,14 +145,15 @@ class Mover(Performer):
         eta: float = ETA,
         guidance: float = 1.0,
         start: Float[Tensor, "B T 22"] | None = None,
+        watch: Watch = iter,
     ) -> Float[Tensor, "B T 22"]:
         """Timelines for texts (`beyond/timeline.py`), tidied up; for a network that plans.
 
         `start` is the noise to begin with (default: drawn).
         """
-        denoise = self.plan_denoiser(ids, guidance)
+        denoise = self.plan_denoiser(ids, frames, guidance)
         x_S = self._noise((len(ids), frames, timeline.D), generator, start)
-        made = sampled(denoise, x_S, self.schedule, steps, eta, generator)
+        made = sampled(denoise, x_S, self.schedule, steps, eta, generator, watch)
         return timeline.tidied(self.plan_scaler.inverse(made))
 
     def act(
@@ -205,9 +197,14 @@ class Mover(Performer):
         ids = self.reader.encoded([found.words] * count)
         draws, frames = generators(seed, count), round(seconds * FPS)
         whole = -(-frames // GRID) * GRID  # as in training; what is too much is cut off
-        evaluations = (steps or self.schedule.S) * (1 + self.can_plan)
-        with with_bar(self, evaluations, "moving", progress) as one:
-            made = one.act_ids(ids, whole, generator=draws, steps=steps, guidance=guidance)
+        made = self.act_ids(
+            ids,
+            whole,
+            generator=draws,
+            steps=steps,
+            guidance=guidance,
+            watch=bar("moving", (steps or self.schedule.S) + 1, progress),
+        )
         source = f"{found.text:.60}"
         made = [
             Motion(finished_performance(x, FPS, BONE_LENGTHS)[:frames], FPS, source=source)
@@ -215,7 +212,7 @@ class Mover(Performer):
         ]
         return made if samples > 1 else made[0]
 
-    @without_gradients
+    @torch.no_grad()
     def act_ids(
         self,
         ids: Texts,
@@ -227,22 +224,24 @@ class Mover(Performer):
         guidance: float = 1.0,
         start: Float[Tensor, "B T 66"] | None = None,
         plan: Float[Tensor, "#B T 22"] | Float[np.ndarray, "#B T 22"] | None = None,
+        watch: Watch = iter,
     ) -> Float[Tensor, "B T 21 3"]:
         """Motions in metres for texts as the network takes them (`reader.encoded`), one each.
 
         `start` is the noise to begin with (default: drawn); pass the same to compare two texts.
         `plan`: the timelines of the motions; by default a network that plans makes its own.
-        `steps` as in `act`.
+        `steps` as in `act`. `watch` gets each sampling loop, and shows how far it is.
         Raises ValueError for a plan of another length or shape.
         """
         if plan is None and self.can_plan:
             how = {"generator": generator, "steps": steps, "eta": eta, "guidance": guidance}
-            plan = self.plans(ids, frames, **how)
+            plan = self.plans(ids, frames, watch=watch, **how)
         if plan is not None and (length := np.shape(plan)[-2]) != frames:
             raise ValueError(f"plan: it has {length} frames, and the motion {frames}")
-        denoise = self.denoiser(ids, guidance, plan)
+        denoise = self.denoiser(ids, frames, guidance, plan)
         x_S = self._noise((len(ids), frames, D), generator, start)
-        return self.positions_of(sampled(denoise, x_S, self.schedule, steps, eta, generator))
+        x0 = sampled(denoise, x_S, self.schedule, steps, eta, generator, watch)
+        return self.positions_of(x0)
 
     def _noise(
         self, shape: tuple[int, ...], generator: Generators | None, start: Tensor | None

@@ -34,13 +34,12 @@ class Config(Protocol):
 
 @dataclass(frozen=True)
 class Network:
-    """A kind of network: its class, its configuration, its builder, and its fast twin."""
+    """A kind of network: its class, its configuration, and its builder."""
 
     performer: str
     model: type[nn.Module]
     config: type
     build: Callable[..., nn.Module]
-    fast: Callable[[nn.Module], object] | None
 
 
 _NETWORKS: dict[str, Network] = {}
@@ -52,20 +51,19 @@ def register(
     config: type,
     *,
     build: Callable[..., nn.Module] | None = None,
-    fast: Callable[[nn.Module], object] | None = None,
 ) -> None:
     """Register a network for a "walker", a "dancer" or a "mover"; files name it by its class.
 
-    model   the class; a walker's network is called with (x_s, s, past, control), a dancer's with
-            (x_s, s, music) and has a method `listen(mel, times)`, a mover's with (x_s, s, music)
-            and has a method `listen(texts)`; all return the target. A mover that plans is a
-            `PlannedMoFusion`
+    model   the class. All networks have `decode(x_s, s, memory)`, which returns the target, and
+            `encode`, which makes the memory once for all steps: of past and control for a walker,
+            of music and a number of frames for a dancer, of a text and frames for a mover. For
+            training they are called with (x_s, s, past, control), or (x_s, s, music). A dancer's
+            has also `listen(mel, times)`, which makes that music, a mover's `listen(texts)`. A
+            mover that plans is a `PlannedMoFusion`
     config  a frozen dataclass with a default for every field, including `target`; the network keeps
             it as `.config`
     build   `build(config, *scalers)` makes a new network (default: `model(config)`); the scalers
             are those of poses and control, or of motion and Mel
-    fast    `fast(network)` makes its fast twin, with the methods of `fast.modiff.FastMoDiff` or
-            `fast.mofusion.FastMoFusion`; without it the network itself is used
     Raises ValueError for an unknown performer, a name or a configuration that another class has,
     and a configuration that lacks a field or a default.
     """
@@ -95,7 +93,7 @@ def register(
             f"network, so make a subclass of it for {model.__name__}"
         )
     make = build or (lambda config, *scalers: model(config))
-    _NETWORKS[model.__name__] = Network(performer, model, config, make, fast)
+    _NETWORKS[model.__name__] = Network(performer, model, config, make)
 
 
 def networks_of(performer: str) -> dict[str, Network]:

@@ -1,19 +1,19 @@
-"""What walkers, dancers and movers share: a network, its noise schedule, and the fast twin."""
+"""What walkers, dancers and movers share: a network and its noise schedule, and sampling."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from functools import cached_property, wraps
 
 import numpy as np
 import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from ..ddpm import Denoiser, Generators, Schedule, final
-from ..fast.samplers import ddim_steps, ddpm_steps
-from ..fast.twins import Twin
+from ..ddpm import Denoiser, Generators, Schedule, Step, ddim_steps, final, sample_steps
 from ..motion.checks import checked_seed
-from .networks import Config, kind_of
+from ..prediction import denoiser_of
+from .networks import Config
+
+Watch = Callable[[Iterable[Step]], Iterable[Step]]  # wraps a loop, as `motion.progress.bar` does
 
 
 def generators(seed: int, count: int, *also: int) -> list[torch.Generator]:
@@ -36,29 +36,19 @@ def sampled(
     steps: int | None,
     eta: float,
     generator: Generators | None,
+    watch: Watch = iter,
 ) -> Float[Tensor, "B T D"]:
     """A whole motion from noise: DDIM with at most S steps, or for None DDPM with all of them.
 
     DDPM draws noise of the posterior's variance here; `Walker` and `ddpm.sample_steps` take beta_s.
+    `watch` gets the sampling loop, and shows how far it is.
     """
     if steps is None:
-        loop = ddpm_steps(denoise, x_S, schedule, variance="posterior", generator=generator)
+        loop = sample_steps(denoise, x_S, schedule, variance="posterior", generator=generator)
     else:
         steps = min(steps, schedule.S)
         loop = ddim_steps(denoise, x_S, schedule, steps, eta, generator=generator)
-    return final(loop).x_s
-
-
-def without_gradients(function: Callable[..., Tensor]) -> Callable[..., Tensor]:
-    """The function in `torch.inference_mode`; what it returns can be changed in place, though."""
-
-    @wraps(function)
-    def called(*args, **kwargs) -> Tensor:
-        with torch.inference_mode():
-            made = function(*args, **kwargs)
-        return made.clone()
-
-    return called
+    return final(watch(loop)).x_s
 
 
 @contextmanager
@@ -112,21 +102,17 @@ class Performer:
     def config(self) -> Config:
         return self.model.config
 
-    @cached_property
-    def _twin(self) -> Twin | None:
-        kind = kind_of(self.model)
-        return Twin(self.model, kind.fast) if kind and kind.fast and self.config.C else None
+    @torch.no_grad()
+    def _encoded(self, network: nn.Module, *condition):
+        """What the network computes of a condition, once for all steps; without dropout."""
+        with evaluating(network):
+            return network.encode(*condition)
 
-    @property
-    def fast(self):
-        """The fast twin of the network with its current weights.
+    def _denoiser(self, network: Callable[..., Tensor], *given) -> Denoiser:
+        """`network(x_s, s, *given)` in evaluation mode, as a denoiser: it returns eps_hat."""
 
-        It is built at first use, and again when the weights have changed. It is None for a network
-        without a condition, or registered without a twin.
-        """
-        return self._twin and self._twin()
+        def evaluated(x_s: Tensor, s: Tensor) -> Tensor:
+            with evaluating(self.model):
+                return network(x_s, s, *given)
 
-    def _evaluated(self, *inputs) -> Tensor:
-        """The network's output in evaluation mode, without dropout; then it is as it was."""
-        with evaluating(self.model):
-            return self.model(*inputs)
+        return denoiser_of(evaluated, self.schedule, self.config.target)

@@ -12,7 +12,7 @@ from jaxtyping import Float, Int
 from torch import Tensor, nn
 
 from ..beyond import timeline
-from ..mofusion import Music
+from ..mofusion import Memory, Music
 from ..motion import moving_frame
 from .networks import register
 from .text_mofusion import TextMoFusion, TextMoFusionConfig, Texts
@@ -66,8 +66,21 @@ class PlannedMoFusion(nn.Module):
         plan: Float[Tensor, "B T 22"],
     ) -> Float[Tensor, "B T 66"]:
         """x0_hat of motions that go with a plan, which has no noise."""
+        return self.decode(x_s, s, self.encode(contexts, x_s.shape[1]), plan)
+
+    def encode(self, contexts: Contexts, frames: int) -> Memory:
+        """What all steps of the motion have in common; that of a timeline is `planner.encode`'s."""
+        return self.performer.encode(contexts.motion, frames)
+
+    def decode(
+        self,
+        x_s: Float[Tensor, "B T 66"],
+        s: Int[Tensor, "B"],
+        memory: Memory,
+        plan: Float[Tensor, "B T 22"],
+    ) -> Float[Tensor, "B T 66"]:
         both = torch.cat([x_s, plan], -1)
-        return self.performer(both, s, contexts.motion)[..., : moving_frame.D]
+        return self.performer.decode(both, s, memory)[..., : moving_frame.D]
 
 
 class Performing(nn.Module):

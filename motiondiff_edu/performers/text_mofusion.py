@@ -16,7 +16,7 @@ from ..conditions import clip as clips
 from ..conditions.clip_encoder import ClipEncoder, ClipTokens
 from ..conditions.text import MOST_WORDS
 from ..conditions.word_encoder import WordEncoder
-from ..mofusion import MoFusionConfig, Music
+from ..mofusion import Memory, MoFusionConfig, Music
 from ..motion import moving_frame
 from .networks import register
 
@@ -73,6 +73,15 @@ class TextMoFusion(nn.Module):
         self, x_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"], context: Music
     ) -> Float[Tensor, "B T D"]:
         return self.unet(x_s, s, context)
+
+    def encode(self, context: Music, frames: int) -> Memory:
+        """What all steps have in common, as MoFusion.encode."""
+        return self.unet.encode(context, frames)
+
+    def decode(
+        self, x_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"], memory: Memory
+    ) -> Float[Tensor, "B T D"]:
+        return self.unet.decode(x_s, s, memory)
 
 
 def encoder_of(config: TextMoFusionConfig) -> WordEncoder | ClipEncoder:

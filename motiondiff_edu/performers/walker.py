@@ -16,29 +16,24 @@ from torch import Tensor, nn
 from .. import rollout
 from ..beyond.footholds import FootholdConfig, FootholdMoDiff
 from ..conditions.control import as_long
-from ..ddpm import Denoiser, Generators, Schedule, draw, final
-from ..fast.footholds import FastFoothold
-from ..fast.modiff import FastMoDiff
-from ..fast.samplers import ddim_steps, ddpm_steps
-from ..fast.twins import watched
+from ..ddpm import Denoiser, Generators, Schedule, ddim_steps, draw, final, sample_steps
 from ..modiff import MoDiff, MoDiffConfig
 from ..motion.checks import checked_samples, checked_seconds, checked_steps
 from ..motion.motion import Motion, MotionError, MotionWarning, as_motion, lies_down
+from ..motion.progress import bar
 from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 from ..motion.size import leg_size, resized
 from ..motion.skeleton import J
-from ..prediction import denoiser_of
 from ..rollout import WindowSampler
 from .joined import Start, change_of, in_words, joined, unlike_training
 from .networks import register
 from .performer import Performer, generators
-from .with_bar import with_bar
 
 STEPS = 10  # default of DDIM: as good as DDPM with all steps, and ten times as fast (RESULTS)
 
-register("walker", MoDiff, MoDiffConfig, fast=FastMoDiff)
-register("walker", FootholdMoDiff, FootholdConfig, build=FootholdMoDiff, fast=FastFoothold)
+register("walker", MoDiff, MoDiffConfig)
+register("walker", FootholdMoDiff, FootholdConfig, build=FootholdMoDiff)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -106,13 +101,15 @@ class Walker(Performer):
         start = Start.of(resized(motion.resampled(FPS), 1 / size), ahead, T_h)
         past = torch.from_numpy(start.past).float().flatten(1)
         steer = torch.from_numpy(start.control).float()
-        evaluations, draws = len(ahead) * (steps or self.schedule.S), generators(seed, count)
-        rollout.check_range(steer[None], T_h, self.card.get("control_range"), size)
-        with with_bar(self, evaluations, "walking", progress) as walker:
-            # it was checked above, in the figure's own metres
-            vars(walker)["card"] = self.card | {"control_range": None}
-            each = (x.expand(count, -1, -1) for x in (past, steer))
-            new = rollout.generate(walker, *each, generator=draws, steps=steps)
+        each = (x.expand(count, -1, -1) for x in (past, steer))
+        new = rollout.generate(
+            self,
+            *each,
+            generator=generators(seed, count),
+            steps=steps,
+            size=size,
+            watch=bar("walking", len(ahead), progress),
+        )
         both = [joined(start, one) for one in new.double().cpu().numpy().reshape(count, -1, J, 3)]
         unlike, height = unlike_training(self.pose_scaler, past), motion.positions[-1, :, 1].min()
         change = change_of(start.control[T_h - 2 :])
@@ -123,22 +120,12 @@ class Walker(Performer):
         made = [resized(Motion(world, FPS, root=path, source=name), size) for world, _ in both]
         return made if samples > 1 else made[0]
 
-    def denoiser(
-        self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"], fast: bool = True
-    ) -> Denoiser:
+    def denoiser(self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]) -> Denoiser:
         """`denoise(x_s, s) -> eps_hat` for this past and control, in the network's units.
 
-        `fast=True` uses the fast twin if there is one, unless `watch` collects the attention;
-        the twin cannot be differentiated.
+        Past and control are encoded here, once; each call decodes.
         """
-        twin = self.fast if fast and not watched(self.model) else None
-        if twin is None:
-            return self._as_eps(lambda x_s, s: self._evaluated(x_s, s, past, control))
-        context = twin.encode(past, control)
-        return self._as_eps(lambda x_s, s: twin.denoise(x_s, s, context))
-
-    def _as_eps(self, network) -> Denoiser:
-        return denoiser_of(network, self.schedule, self.config.target)
+        return self._denoiser(self.model.decode, self._encoded(self.model, past, control))
 
     def window_sampler(self, steps: int | None = None) -> WindowSampler:
         """A function that draws a window of T_p poses: DDPM with all steps, or DDIM with `steps`.
@@ -146,15 +133,14 @@ class Walker(Performer):
         Notebook: 08
         """
 
-        @torch.inference_mode()
+        @torch.no_grad()
         def sample(past: Tensor, control: Tensor, generator: Generators) -> Tensor:
             denoise = self.denoiser(past, control)
             x_S = draw(past.new_empty(len(past), self.config.T_p, self.config.D), generator)
             if steps is None:
-                loop = ddpm_steps(denoise, x_S, self.schedule, generator=generator)
+                loop = sample_steps(denoise, x_S, self.schedule, generator=generator)
             else:
-                loop = ddim_steps(denoise, x_S, self.schedule, steps=steps, generator=generator)
+                loop = ddim_steps(denoise, x_S, self.schedule, steps, generator=generator)
             return final(loop).x_s
 
-        # outside of inference mode, so that the result can be changed in place
-        return lambda *inputs: sample(*inputs).clone()
+        return sample

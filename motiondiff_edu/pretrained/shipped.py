@@ -19,6 +19,7 @@ from ..editing.masks import checked_known
 from ..editing.plausible import each_until_plausible, longest_glide
 from ..motion.checks import checked_count, checked_samples
 from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
+from ..motion.progress import bar
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HIPS, TOES
 from ..performers.dancer import Dancer
@@ -26,7 +27,6 @@ from ..performers.finished import finished_edit, finished_performance
 from ..performers.mover import LONGEST, SHORTEST, Mover
 from ..performers.performer import generators
 from ..performers.walker import Walker
-from ..performers.with_bar import with_bar
 from . import checkpoints
 
 STEPS = 50  # of DDIM, for in-betweens by default
@@ -62,11 +62,10 @@ def inbetween(
         warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
 
     def generate(draws: list, departures: Departures) -> Float[np.ndarray, "samples T 21 3"]:
-        with with_bar(_shipped("inbetweens"), steps, "filling in", progress) as dancer:
-            return inbetweens.inbetween(
-                dancer, motion.positions, known, samples=len(draws), steps=steps, generator=draws,
-                departures=departures,
-            )  # fmt: skip
+        return inbetweens.inbetween(
+            _shipped("inbetweens"), motion.positions, known, samples=len(draws), steps=steps,
+            generator=draws, departures=departures, watch=bar("filling in", steps + 1, progress),
+        )  # fmt: skip
 
     draws = generators(seed, count)
     made, notes = [], []
@@ -100,12 +99,11 @@ def reconstruct(
     """
     known, count = _fitting(motion, known), checked_samples(samples)
     walker, draws = _shipped("walker"), generators(seed, count)
-    total = count * reconstruction.evaluations(walker, known)
-    with with_bar(walker, total, "reconstructing", progress) as walker:
-        made = [
-            reconstruction.reconstruct(walker, motion.positions, known, generator=draw)
-            for draw in draws
-        ]
+    watch = bar("reconstructing", reconstruction.ROUNDS, progress)
+    made = [
+        reconstruction.reconstruct(walker, motion.positions, known, generator=draw, watch=watch)
+        for draw in draws
+    ]
     made = [_made(motion, known, positions, "reconstructed") for positions in made]
     return made if samples > 1 else made[0]
 
@@ -153,13 +151,10 @@ def edit(
     count, mover = checked_samples(samples), _shipped("mover")
     for note in mover.reader.read(text).notes:
         warnings.warn(note, MotionWarning, stacklevel=2)
-    visited = by_words.visited(mover.schedule.S, by_words.STEPS, strength)
-    evaluations = len(visited) + by_words.STEPS * mover.can_plan
-    with with_bar(mover, evaluations, "editing", progress) as one:
-        made = by_words.edit_by_words(
-            one, motion.positions, text, mask, strength=strength, samples=count,
-            generator=generators(seed, count),
-        )  # fmt: skip
+    made = by_words.edit_by_words(
+        mover, motion.positions, text, mask, strength=strength, samples=count,
+        generator=generators(seed, count), watch=bar("editing", shown=progress),
+    )  # fmt: skip
     nothing = np.zeros((len(motion), len(motion.skeleton)), bool)
     kept = nothing if mask is None else mask
     made = [finished_edit(one, motion.positions, FPS, kept) for one in made]

@@ -79,7 +79,7 @@ class Known(Halving):
         self.given = exact.mixture(torch.ones(1), torch.zeros(1, T_p * D), covariance[None])
         self.schedule = linear_schedule(60, 1e-3, 0.3)
 
-    def denoiser(self, past, control, fast=True):
+    def denoiser(self, past, control):
         assert past.shape[1] == T_H and control.shape[1] == T_H + self.config.T_p
         return exact.exact_denoiser(self.given, self.schedule)
 
@@ -153,13 +153,12 @@ class Listening(Known):
         self.control_scaler = Scaler(torch.tensor([1.0, 0.1, -0.2]), torch.tensor([0.5, 0.2, 0.8]))
         self.heard = []
 
-    def denoiser(self, past, control, fast=True):
-        self.heard.append((past, control, fast))
-        return super().denoiser(past, control, fast)
+    def denoiser(self, past, control):
+        self.heard.append((past, control))
+        return super().denoiser(past, control)
 
 
 def test_under_a_mask_the_network_is_given_its_own_units():
-    """And it is no fast twin: that could not be differentiated."""
     walker = Listening()
     random = torch.Generator().manual_seed(4)
     ahead = torch.randn(2, T_H, D, generator=random)
@@ -167,12 +166,11 @@ def test_under_a_mask_the_network_is_given_its_own_units():
     known = torch.zeros(2, T_H, D, dtype=torch.bool)
     known[:, 2] = True
     masked_way_back(rollout(walker), ahead, control, torch.ones(2, T_H, D), known)
-    ((past, steer, fast),) = walker.heard
+    ((past, steer),) = walker.heard
     torch.testing.assert_close(past, (ahead - 0.5) / 2)
     middle = torch.tensor([1.0, 0.1, -0.2])
     spread = torch.tensor([0.5, 0.2, 0.8])
     torch.testing.assert_close(steer, (control - middle) / spread)
-    assert not fast
 
 
 @pytest.mark.parametrize("T_p", [T_H - 1, T_P])

@@ -2,7 +2,6 @@
 
 import pytest
 import torch
-from small_dancers import dancer_of_bands as dancer
 from two_numbers import correlated, given_first
 
 from motiondiff_edu.beyond.guidance import blended, blended_guess, guided, guided_guess, with_guess
@@ -142,15 +141,6 @@ def test_many_moves_of_guidance_solve_for_all_given_entries():
     torch.testing.assert_close(guess(300, 0.5), plain + 0.5 * pull.T, atol=1e-3, rtol=1e-3)
     missed = [(guess(moves) - given)[known].norm() for moves in (1, 2, 4, 8)]
     assert all(later < 0.9 * sooner for sooner, later in zip(missed, missed[1:], strict=False))
-
-
-def test_guidance_through_a_fast_twin_is_refused():
-    who, mel = dancer(5), torch.randn(1, 64, 5, generator=seeded(9))
-    start = torch.zeros(1, 40, 63)
-    steered = guided(who.denoiser(mel, 40), who.schedule, start, start == 0)
-    loop = inpaint_steps(steered, start, who.schedule, start, start == 0, steps=2)
-    with pytest.raises(ValueError, match="fast twin"):
-        next(loop)
 
 
 def test_a_move_that_would_lead_away_is_not_made():

@@ -10,7 +10,7 @@ from motiondiff_edu.beyond.self_attention import (
     from_both_ends,
 )
 from motiondiff_edu.cross_modal_attention import angles_of
-from motiondiff_edu.mofusion import MoFusion, MoFusionConfig, View
+from motiondiff_edu.mofusion import MoFusion, MoFusionConfig, Level
 
 CONFIG = MoFusionConfig(D=5, C=6, S=20, widths=(16, 24, 32), heads=2, music_layers=0)
 
@@ -75,7 +75,7 @@ def test_seconds_are_counted_from_the_first_frame_and_to_the_last_one_of_each_mo
     """The slowest curve turns once in 50 s, so it is nearly the angle itself."""
     times, mask = torch.arange(5.0), torch.ones(2, 5, 1)
     mask[1, 3:] = 0
-    codes = from_both_ends(View(times=times, mask=mask, bias=None, angles={}))
+    codes = from_both_ends(Level(times=times, mask=mask, bias=None, angles={}))
     sines = codes.unflatten(-1, (2, 2 * CURVES))[..., 0]  # (motion, frame, which end)
     angle = 2 * torch.pi * SLOWEST
     torch.testing.assert_close(sines[..., 0], (angle * times).sin().expand(2, -1))

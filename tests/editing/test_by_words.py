@@ -40,7 +40,7 @@ def apart(a: np.ndarray, b: np.ndarray) -> float:
 class Exact(Mover):
     """A mover whose motions are standard normal, whatever the text; its denoiser is exact."""
 
-    def denoiser(self, ids, guidance=1.0, plan=None, fast=True):
+    def denoiser(self, ids, frames, guidance=1.0, plan=None):
         return lambda x_s, s: x_s * (1 - at(self.schedule.alpha_bar, s, x_s)).sqrt()
 
 

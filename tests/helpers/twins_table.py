@@ -22,8 +22,8 @@ import torch
 from scipy.spatial.transform import Rotation, Slerp
 
 from data_synth.mixtures import crossed_bars
-from motiondiff_edu import cross_modal_attention as cross
 from motiondiff_edu import (
+    bound,
     ddpm,
     diffusion_dropout,
     exact,
@@ -34,6 +34,7 @@ from motiondiff_edu import (
     rollout,
     training,
 )
+from motiondiff_edu import cross_modal_attention as cross
 from motiondiff_edu.baselines import linear_dropout, ridge, text
 from motiondiff_edu.conditions import music
 from motiondiff_edu.metrics import (
@@ -85,7 +86,7 @@ def _two_steps(x0, s, beta, noises) -> torch.Tensor:
 
 
 def _kl(*four) -> torch.Tensor:
-    return ddpm.gaussian_kl(*(value[:, None] for value in four))
+    return bound.gaussian_kl(*(value[:, None] for value in four))
 
 
 TWINS["02"] = {
@@ -235,24 +236,24 @@ def _one_by_one(n: int, size: int) -> list[torch.Tensor | None]:
 
 TWINS["04"] = {
     "prior_term": Twin(
-        lambda x0, alpha_bar: _column(ddpm.prior_kl(x0, LINEAR)),
+        lambda x0, alpha_bar: _column(bound.prior_kl(x0, LINEAR)),
         lambda: (_normal(7, 1), LINEAR.alpha_bar[-1]),
     ),
     "step_term": Twin(
-        lambda *args: _column(ddpm.step_kl(*args)),
+        lambda *args: _column(bound.step_kl(*args)),
         lambda: (_normal(7, 1), _normal(7, 1, seed=1), 30, _normal(7, 1, seed=2), LINEAR),
     ),
     "last_term": Twin(
-        lambda *args: _column(ddpm.reconstruction_nll(*args)),
+        lambda *args: _column(bound.reconstruction_nll(*args)),
         lambda: (_normal(7, 1), _normal(7, 1, seed=1), _normal(7, 1, seed=2), LINEAR),
     ),
     "all_terms": Twin(
-        lambda denoise, x0, schedule, noises: ddpm.bound_terms(
+        lambda denoise, x0, schedule, noises: bound.bound_terms(
             denoise, x0, schedule, torch.Generator().manual_seed(5)
         ),
         lambda: (_shrink, _normal(7, 1), LINEAR, _one_by_one(100, 7)),
     ),
-    "weight": Twin(lambda s, schedule: ddpm.dropped_weight(schedule)[s], lambda: (30, LINEAR)),
+    "weight": Twin(lambda s, schedule: bound.dropped_weight(schedule)[s], lambda: (30, LINEAR)),
 }
 
 

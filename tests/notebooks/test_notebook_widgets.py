@@ -25,7 +25,7 @@ def standing_still(walker, past, control, **options) -> torch.Tensor:
     frames = control.shape[-2] - past.shape[-2]
     if isinstance(getattr(walker, "model", None), FootholdMoDiff):
         for _ in range(10 * frames):
-            walker.fast.model.gate(torch.zeros(1, walker.config.T_p, walker.config.width))
+            walker.model.gate(torch.zeros(1, walker.config.T_p, walker.config.width))
     return past[..., -1:, :].repeat_interleave(frames, dim=-2)
 
 

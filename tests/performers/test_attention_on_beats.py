@@ -14,7 +14,7 @@ from small_dancers import dancer_to_mel as dancer
 
 from motiondiff_edu.conditions.music import log_mel
 from motiondiff_edu.cross_modal_attention import CrossModalAttention
-from motiondiff_edu.mofusion import MoFusion, View
+from motiondiff_edu.mofusion import MoFusion, Level
 from motiondiff_edu.performers import attention_on_beats
 from motiondiff_edu.pretrained import checkpoints
 
@@ -51,14 +51,14 @@ def test_each_level_has_a_row_for_each_of_its_frames_and_a_column_for_each_token
 def test_rows_and_columns_lie_where_they_are_in_time(monkeypatch):
     """A network that may attend within 0.2 s only: where its weights are zero is known
     beforehand."""
-    plain = View.of
+    plain = Level.of
 
     def near(T, lengths, level, music, config):
         view, times = plain(T, lengths, level, music, config), torch.arange(0, T, 2**level) / 20
         away = (times[:, None] - music.times).abs()
         return replace(view, bias=torch.where(away <= 0.2, 0.0, -1e4)[None, None])
 
-    monkeypatch.setattr(View, "of", near)
+    monkeypatch.setattr(Level, "of", near)
     found, times = maps(T=30, heads=1)
     for (name, m), level in zip(found.items(), (0, 1, 2, 1, 0), strict=True):
         frames = np.arange(len(m)) * 2**level / 20

@@ -86,8 +86,8 @@ def test_guidance_leads_away_from_the_empty_text(mover, tiny):
     texts, nothing = tiny.encoded([("walks forward",)]), tiny.tokens([""])
     x, s = torch.randn(1, 40, SMALL.D), torch.full((1,), 20)
     with torch.no_grad():
-        plain, free = mover.denoiser(texts)(x, s), mover.denoiser(nothing)(x, s)
-        torch.testing.assert_close(mover.denoiser(texts, 2.5)(x, s), 2.5 * plain - 1.5 * free)
+        plain, free = (mover.denoiser(one, 40)(x, s) for one in (texts, nothing))
+        torch.testing.assert_close(mover.denoiser(texts, 40, 2.5)(x, s), 2.5 * plain - 1.5 * free)
     assert (plain - free).abs().max() > 1e-3
 
 

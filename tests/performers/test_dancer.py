@@ -1,7 +1,6 @@
 """A dancer: lengths, seeds, samplers, the baselines that dance, and its file."""
 
 import warnings
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,7 +17,6 @@ from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
 from motiondiff_edu.motion.dance_frame import to_positions
 from motiondiff_edu.motion.scaler import Scaler
-from motiondiff_edu.performers import with_bar
 from motiondiff_edu.performers.dancer import ETA, LOUD, Dancer
 from motiondiff_edu.prediction import to_eps
 from motiondiff_edu.pretrained.checkpoints import (
@@ -236,16 +234,15 @@ def test_dancing_to_sound(tmp_path: Path):
 def test_the_bar_is_full_at_the_end_with_guidance_as_well(guidance, steps, monkeypatch):
     totals, moved = [], []
 
-    @contextmanager
-    def counting(total, what, shown):
+    def counting(what, total, shown):
         totals.append(total)
-        yield lambda: moved.append(1)
+        return lambda loop: (moved.append(step.s) or step for step in loop)
 
-    monkeypatch.setattr(with_bar, "bar", counting)
+    monkeypatch.setattr("motiondiff_edu.performers.dancer.bar", counting)
     one = dancer(replace(UNET, C=80))
     one = replace(one, mel_scaler=Scaler.nothing(80), card={"recipe": {"no_music": 0.1}})
     one.dance(0.3 * torch.randn(16_000, generator=seeded()), steps=steps, guidance=guidance)
-    assert totals == [len(moved)] == [steps or 12]
+    assert totals == [len(moved)] == [(steps or 12) + 1] and moved[-1] == 0
 
 
 def test_a_very_quiet_song_is_danced_to_as_if_it_were_louder():

@@ -144,8 +144,4 @@ def test_a_network_with_an_ear_is_saved_and_read(network, config, tmp_path):
     assert again.config == config
     mel, _ = piece(2, 41)
     x, s = torch.randn(2, 20, 63, generator=torch.Generator().manual_seed(3)), torch.tensor([3, 9])
-    wanted = dancer.denoiser(mel, 20, fast=False)(x, s)
-    for one in (again, dancer):
-        for fast in (True, False):
-            made = one.denoiser(mel, 20, fast=fast)(x, s)
-            torch.testing.assert_close(made, wanted, atol=1e-4, rtol=1e-4)
+    torch.testing.assert_close(again.denoiser(mel, 20)(x, s), dancer.denoiser(mel, 20)(x, s))

@@ -25,22 +25,20 @@ def test_no_music_is_the_same_for_all_songs():
     assert not some[[0, 2]].any() and torch.equal(some[1], music.tokens[1])
 
 
-@pytest.mark.parametrize("fast", [True, False])
-def test_guidance_goes_away_from_no_music(fast):
+def test_guidance_goes_away_from_no_music():
     s = torch.tensor([8, 11])
-    at = [GUIDED.denoiser(MEL, 40, w, fast)(X, s) for w in (0, 1, 3)]
+    at = [GUIDED.denoiser(MEL, 40, w)(X, s) for w in (0, 1, 3)]
     torch.testing.assert_close(at[2], at[0] + 3 * (at[1] - at[0]), atol=1e-5, rtol=1e-5)
     assert (at[1] - at[0]).abs().max() > 1e-3
-    other = GUIDED.denoiser(MEL.flip(0), 40, 0, fast)(X, s)
+    other = GUIDED.denoiser(MEL.flip(0), 40, 0)(X, s)
     torch.testing.assert_close(other, at[0])  # w = 0 hears no music
-    assert (GUIDED.denoiser(MEL.flip(0), 40, 1, fast)(X, s) - at[1]).abs().max() > 1e-3
+    assert (GUIDED.denoiser(MEL.flip(0), 40, 1)(X, s) - at[1]).abs().max() > 1e-3
 
 
-@pytest.mark.parametrize("fast", [True, False])
-def test_the_first_and_the_last_steps_have_no_guidance(fast):
+def test_the_first_and_the_last_steps_have_no_guidance():
     """Alpha_bar at these steps is .85 and almost 0; w below 1 mixes at all of them."""
     s = torch.tensor([3, 12])
-    none, half, three = (GUIDED.denoiser(MEL, 40, w, fast)(X, s) for w in (1, 0.5, 3))
+    none, half, three = (GUIDED.denoiser(MEL, 40, w)(X, s) for w in (1, 0.5, 3))
     torch.testing.assert_close(three, none)
     assert (half - none).abs().amax((1, 2)).min() > 1e-3
 

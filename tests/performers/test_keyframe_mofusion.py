@@ -17,7 +17,6 @@ from motiondiff_edu.motion.dance_frame import Place
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.performers.keyframe_mofusion import KeyframeConfig, KeyframeMoFusion
-from motiondiff_edu.performers.with_bar import with_bar
 from motiondiff_edu.prediction import x0_from_eps, x0_from_v
 from motiondiff_edu.pretrained import checkpoints
 
@@ -175,20 +174,11 @@ def test_in_betweens_of_a_figure_that_turns_do_not_shrink(dancer):
     assert width.min() < 0.1 * width.max()
 
 
-def test_the_bar_counts_its_evaluations(dancer, monkeypatch):
-    steps = []
-    monkeypatch.setattr("motiondiff_edu.performers.with_bar.bar", lambda *_: _Counting(steps))
-    with with_bar(dancer, 5, "filling in") as one:
-        inbetween(one, np.zeros((T, 21, 3)), keyframes(T, 8), steps=5)
-    assert len(steps) == 5
+def test_a_loop_that_is_watched_gives_each_step(dancer):
+    seen = []
 
+    def watch(loop):
+        return (seen.append(step.s) or step for step in loop)
 
-class _Counting:
-    def __init__(self, steps):
-        self.steps = steps
-
-    def __enter__(self):
-        return lambda: self.steps.append(1)
-
-    def __exit__(self, *_):
-        return None
+    inbetween(dancer, np.zeros((T, 21, 3)), keyframes(T, 8), steps=5, watch=watch)
+    assert len(seen) == 5 + 1 and seen[-1] == 0

@@ -1,7 +1,6 @@
 """A mover: sentences to motions, its files, and what it refuses."""
 
 import warnings
-from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -20,7 +19,6 @@ from motiondiff_edu.metrics.bone_lengths import bone_lengths
 from motiondiff_edu.motion.moving_frame import D, to_features, to_positions
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS
-from motiondiff_edu.performers import with_bar
 from motiondiff_edu.performers.described_windows import DescribedWindows
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.performers.text_mofusion import TextMoFusion
@@ -120,9 +118,9 @@ def test_a_plan_is_made_tidied_and_followed(planning):
 def test_a_plan_needs_a_network_that_takes_one(planning):
     ids = ids_of([("walk",)], WORDS)
     with pytest.raises(ValueError, match="plan: this mover needs one"):
-        planning.denoiser(ids)
+        planning.denoiser(ids, 40)
     with pytest.raises(ValueError, match="plan: this mover takes none"):
-        mover_of(SMALL).denoiser(ids, plan=torch.zeros(1, 40, timeline.D))
+        mover_of(SMALL).denoiser(ids, 40, plan=torch.zeros(1, 40, timeline.D))
     assert planning.can_plan and not mover_of(SMALL).can_plan
 
 
@@ -147,7 +145,8 @@ def test_plans_are_guided_too(planning):
     x, s = torch.randn(1, 40, timeline.D, generator=seeded()), torch.tensor([5])
     nothing = planning.reader.encoded([()])
     own, free, guided = (
-        planning.plan_denoiser(text, w)(x, s) for text, w in ((ids, 1), (nothing, 1), (ids, 2.5))
+        planning.plan_denoiser(text, x.shape[1], w)(x, s)
+        for text, w in ((ids, 1), (nothing, 1), (ids, 2.5))
     )
     torch.testing.assert_close(guided, free + 2.5 * (own - free), atol=1e-4, rtol=1e-3)
     apart = planning.act_ids(ids, 40, steps=2, guidance=2.5, generator=seeded())
@@ -179,13 +178,12 @@ def test_guidance_is_a_number_from_0_to_20(mover, guidance):
 def test_the_bar_counts_the_plan_as_well(mover, monkeypatch):
     told = []
 
-    @contextmanager
-    def counting(total, what, shown):
-        yield lambda: told.append(total)
+    def counting(what, total, shown):
+        return lambda loop: (told.append(total) or step for step in loop)
 
-    monkeypatch.setattr(with_bar, "bar", counting)
+    monkeypatch.setattr("motiondiff_edu.performers.mover.bar", counting)
     mover.act("walks", seconds=2.0, steps=3)
-    assert told == [len(told)] * len(told) and len(told) == 3 * (1 + mover.can_plan)
+    assert told == [3 + 1] * (3 + 1) * (1 + mover.can_plan)
 
 
 def test_the_units_of_a_motion_are_those_of_the_network(mover):
@@ -203,8 +201,8 @@ def test_guidance_of_one_is_the_conditional_network_and_more_leads_away_from_no_
     x, s = torch.randn(1, 40, D, generator=seeded()), torch.full((1,), 20)
     plan = mover.plans(ids, 40, steps=2, generator=seeded()) if mover.can_plan else None
     with torch.no_grad():
-        plain, free = (mover.denoiser(text, plan=plan)(x, s) for text in (ids, nothing))
-        guided = mover.denoiser(ids, 2.5, plan)(x, s)
+        plain, free = (mover.denoiser(text, 40, plan=plan)(x, s) for text in (ids, nothing))
+        guided = mover.denoiser(ids, 40, 2.5, plan)(x, s)
         torch.testing.assert_close(guided, 2.5 * plain - 1.5 * free)
     assert (plain - free).abs().max() > 1e-3
     assert mover.model.training is False

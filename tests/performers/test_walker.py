@@ -9,8 +9,7 @@ import pytest
 import torch
 from devices import devices_of
 
-from motiondiff_edu.ddpm import linear_schedule, sample_steps
-from motiondiff_edu.fast.samplers import ddim_steps
+from motiondiff_edu.ddpm import ddim_steps, linear_schedule, sample_steps
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.walker import Walker

@@ -46,7 +46,7 @@ class Standing:
 
         return sample
 
-    def denoiser(self, past, control, fast=True):
+    def denoiser(self, past, control):
         return lambda x, s: x / (1 - self.schedule.alpha_bar[s]).sqrt().view(-1, 1, 1).to(x)
 
 

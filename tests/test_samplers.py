@@ -1,16 +1,11 @@
-"""Fast samplers.
-
-Equal to the plain loop, to published runs, and honest about what few steps lose.
-"""
+"""The two samplers: equal to published runs, and honest about what few steps lose."""
 
 import pytest
 import torch
 
 from data_synth.mixtures import crossed_bars, gaussian, three_hills
-from motiondiff_edu import ddpm
-from motiondiff_edu.ddpm import linear_schedule, sample_steps, timesteps
+from motiondiff_edu.ddpm import ddim_steps, linear_schedule, sample_steps, timesteps
 from motiondiff_edu.exact import dataset_denoiser, exact_denoiser
-from motiondiff_edu.fast.samplers import ddim_steps, ddpm_steps
 from motiondiff_edu.prediction import to_eps
 
 START = (torch.arange(768).reshape(3, 8, 8, 4) / 768).permute(3, 0, 1, 2)
@@ -29,62 +24,6 @@ def last_of(steps):
     return last.x_s
 
 
-@pytest.mark.parametrize("variance", ["beta", "posterior"])
-@pytest.mark.parametrize("clip", [None, 0.8])
-def test_fast_ddpm_equals_the_plain_loop_for_the_same_noise(variance, clip):
-    schedule = linear_schedule(40, 1e-4, 0.3)
-    generator = torch.Generator().manual_seed(9)
-    start = torch.randn(2, 5, 3, generator=generator, dtype=torch.float64)
-    noise = torch.randn(40, 2, 5, 3, generator=generator, dtype=torch.float64)
-
-    def model(x, s):
-        return torch.tanh(x + s.reshape(-1, 1, 1) / 40)
-
-    kwargs = {"noise": noise, "variance": variance, "clip": clip}
-    pair = [list(f(model, start, schedule, **kwargs)) for f in (sample_steps, ddpm_steps)]
-    assert len(pair[0]) == len(pair[1]) == 41
-    for plain, fast in zip(*pair, strict=True):
-        assert plain.s == fast.s
-        torch.testing.assert_close(plain.x_s, fast.x_s, atol=1e-6, rtol=0)
-        torch.testing.assert_close(plain.x0_hat, fast.x0_hat, atol=1e-6, rtol=0)
-        torch.testing.assert_close(plain.eps_hat, fast.eps_hat, atol=1e-6, rtol=1e-6)
-
-
-@pytest.mark.parametrize("steps, eta", [(7, 0.0), (7, 0.6), (7, 1.0), ([33, 8, 2], 0.4)])
-@pytest.mark.parametrize("clip", [None, 0.8])
-def test_fast_ddim_equals_the_plain_loop_for_the_same_noise_and_seed(steps, eta, clip):
-    schedule = linear_schedule(40, 1e-4, 0.3)
-    start = torch.randn(2, 5, 3, generator=seeded(9), dtype=torch.float64)
-    given = torch.randn(40, 2, 5, 3, generator=seeded(3), dtype=torch.float64)
-
-    def model(x, s):
-        return torch.tanh(x + s.reshape(-1, 1, 1) / 40)
-
-    for noise in (given, None):
-        pair = [
-            list(f(model, start, schedule, steps, eta, noise=noise, clip=clip, generator=seeded(4)))
-            for f in (ddpm.ddim_steps, ddim_steps)
-        ]
-        assert len(pair[0]) == len(pair[1]) == (8 if steps == 7 else 4)
-        for plain, fast in zip(*pair, strict=True):
-            assert plain.s == fast.s
-            for part in ("x_s", "x0_hat", "eps_hat"):
-                ours, wanted = getattr(fast, part), getattr(plain, part)
-                torch.testing.assert_close(ours, wanted, atol=1e-6, rtol=1e-6)
-        if clip:
-            assert all(step.x0_hat.abs().max() <= clip + 1e-9 for step in pair[0][:-1])
-
-
-def test_fast_ddpm_equals_the_plain_loop_for_the_same_seed():
-    schedule = linear_schedule()
-    denoise = exact_denoiser(three_hills(), schedule)
-    pair = [
-        last_of(f(denoise, (6, 1), schedule, generator=torch.Generator().manual_seed(10)))
-        for f in (sample_steps, ddpm_steps)
-    ]
-    torch.testing.assert_close(*pair, atol=1e-5, rtol=0)
-
-
 class FarGenerator(torch.Generator):
     """Stands for the generator of another device.
 
@@ -94,7 +33,7 @@ class FarGenerator(torch.Generator):
     device = torch.device("meta")
 
 
-@pytest.mark.parametrize("sample", [sample_steps, ddpm_steps, ddpm.ddim_steps, ddim_steps])
+@pytest.mark.parametrize("sample", [sample_steps, ddim_steps])
 def test_a_shape_is_drawn_and_walked_where_the_generator_lives(sample):
     schedule = linear_schedule(11, 1e-3, 0.7)
     for denoise in (
@@ -113,7 +52,9 @@ def test_the_last_step_draws_nothing():
     schedule, noise = linear_schedule(), torch.zeros(100, 2, 3)
     noise[0] = 1e6
     assert (
-        last_of(ddpm_steps(lambda x, s: 0 * x, torch.ones(2, 3), schedule, noise=noise)).abs().max()
+        last_of(sample_steps(lambda x, s: 0 * x, torch.ones(2, 3), schedule, noise=noise))
+        .abs()
+        .max()
         < 100
     )
 
@@ -154,7 +95,7 @@ def test_ddim_with_eta_1_and_all_steps_is_ddpm_with_the_posterior_variance():
     start = torch.randn(4, 1, dtype=torch.float64)
     ddim = last_of(ddim_steps(denoise, start, schedule, 30, 1.0, noise=noise))
     torch.testing.assert_close(
-        ddim, last_of(ddpm_steps(denoise, start, schedule, noise=noise, variance="posterior"))
+        ddim, last_of(sample_steps(denoise, start, schedule, noise=noise, variance="posterior"))
     )
 
 
@@ -184,7 +125,7 @@ def test_ddim_under_disperses_as_its_own_algebra_says(steps, lost):
     denoise = exact_denoiser(gaussian(0.0, std), schedule)
     ddim = last_of(ddim_steps(denoise, start, schedule, steps))
     ddpm = last_of(
-        ddpm_steps(denoise, start, schedule, generator=torch.Generator().manual_seed(12))
+        sample_steps(denoise, start, schedule, generator=torch.Generator().manual_seed(12))
     )
     assert predicted == pytest.approx(lost, abs=0.005)
     assert ddim.std().item() == pytest.approx(predicted, abs=0.005)

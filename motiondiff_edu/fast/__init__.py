@@ -1,1 +1,0 @@
-"""Fast twins of the core: tests compare each with the plain version that the course explains."""
