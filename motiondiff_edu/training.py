@@ -60,10 +60,13 @@ class TrainState:
 
 @dataclass(frozen=True)
 class Saving:
-    """A function that writes a state, and the interval in steps; `recipes.runs.saver` makes one."""
+    """A function that writes a state, and the seconds of training between two such writes.
+
+    `recipes.runs.saver` makes one.
+    """
 
     write: Callable[[TrainState], object]
-    every: int = 1000
+    every: float = 300.0  # seconds
 
 
 @dataclass(frozen=True)
@@ -106,7 +109,7 @@ def train_steps(
     """Train until `state.step == steps`, yielding after each step.
 
     `clip`: largest norm of the gradient.
-    `save`: writes the state every `save.every` steps, and at the end.
+    `save`: writes the state every `save.every` seconds of training, and at the end.
     `before`: called ahead of each step with the number of steps done, for losses that change on
     the way (`diffusion_dropout.Dropout.now`).
     The whole network is in training mode at each step: a part that shall stay without dropout has
@@ -123,6 +126,7 @@ def train_steps(
         unit="step",
         mininterval=1.0,
     )
+    saved = state.seconds
     with bar, _evaluating_after(state.model):
         while state.step < steps:
             state.model.train()  # at each step: the caller may have sampled since the last one
@@ -140,8 +144,9 @@ def train_steps(
             state.optimizer.step()
             _follow(state)
             state.step, state.seconds = state.step + 1, state.seconds + time.perf_counter() - began
-            if save and (state.step % save.every == 0 or state.step == steps):
+            if save and (state.seconds - saved >= save.every or state.step == steps):
                 save.write(state)
+                saved = state.seconds
             bar.update()
             report = TrainStep(state.step, loss.item(), norm.item(), rate)
             if state.step % 20 == 0:

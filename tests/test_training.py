@@ -19,7 +19,7 @@ from torch import nn
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.recipes.muon import MuonAndAdam
 from motiondiff_edu.recipes.runs import notes_of, resume_run, save_run, saver
-from motiondiff_edu.training import NonFiniteLoss, TrainState, cosine_lr, train_steps
+from motiondiff_edu.training import NonFiniteLoss, Saving, TrainState, cosine_lr, train_steps
 
 
 def network():
@@ -36,6 +36,12 @@ def toy_loss(model, generator):
     return (model(x) - x[:, :2] * x[:, 3:]).square().mean()
 
 
+def every_eighth(path) -> Saving:
+    """It is asked after each step, and writes every eighth and the 40th."""
+    write = saver(path).write
+    return Saving(lambda state: state.step % 8 or write(state), every=0.0)
+
+
 def run(path, steps, resume=False, pause=0):
     torch.set_num_threads(1)
     state = TrainState.start(network(), seed=4)
@@ -44,7 +50,7 @@ def run(path, steps, resume=False, pause=0):
         resume_run(state, path)
     lr = cosine_lr(1e-2, 40, warmup=6)
     for report in train_steps(
-        state, toy_loss, steps, lr=lr, save=saver(path, every=8), progress=False
+        state, toy_loss, steps, lr=lr, save=every_eighth(path), progress=False
     ):
         if report.step == pause:
             print("paused", flush=True)
@@ -88,7 +94,7 @@ def test_a_killed_run_resumes_bit_for_bit(tmp_path: Path):
         process.send_signal(signal.SIGKILL)
     assert process.returncode == -signal.SIGKILL
     state = run(killed, 0, resume=True)
-    assert state.step == 16  # saved every 8; steps 17 to 21 are lost
+    assert state.step == 16  # the run was saved there; steps 17 to 21 are lost
     again = run(killed, 40, resume=True)
     assert again.step == expected.step == 40
     first, second = load_file(whole), load_file(killed)
@@ -230,7 +236,7 @@ def test_a_non_finite_loss_stops_and_keeps_the_last_good_weights(tmp_path: Path,
         NonFiniteLoss, match=r"^step 6: the loss is (nan|inf).*learning rate.*run\.safetensors"
     ):
         for _ in train_steps(
-            state, bad_at(6, value), 20, save=saver(path, every=100), progress=False
+            state, bad_at(6, value), 20, save=saver(path, every=1e9), progress=False
         ):
             good.append(state.model.weight.detach().clone())
     assert len(good) == state.step == 6
@@ -247,20 +253,32 @@ def test_broken_weights_are_not_saved_over_good_ones(tmp_path: Path):
 
     path, model = tmp_path / "run.safetensors", nn.Linear(3, 2)
     state, bad = TrainState.start(model, seed=1), bad_at(99, math.nan)
-    list(train_steps(state, bad, 5, save=saver(path, every=5), progress=False))
+    list(train_steps(state, bad, 5, save=saver(path, every=1e9), progress=False))
     before = path.read_bytes()
     state.optimizer = Breaks(model.parameters(), lr=0.1)
     with pytest.raises(
         NonFiniteLoss, match="step 6: .* had broken the weights already; they are not saved"
     ):
-        list(train_steps(state, bad, 20, save=saver(path, every=100), progress=False))
+        list(train_steps(state, bad, 20, save=saver(path, every=1e9), progress=False))
     assert path.read_bytes() == before
+
+
+def test_a_run_is_saved_by_the_seconds_of_its_training(monkeypatch):
+    """By a clock on which each step takes a second."""
+    ticks = iter(range(10**6))
+    monkeypatch.setattr("motiondiff_edu.training.time.perf_counter", lambda: next(ticks))
+    saved = []
+    state = TrainState.start(nn.Linear(3, 2), seed=1)
+    state.seconds = 100.0  # of sittings before
+    save = Saving(lambda state: saved.append(state.step), every=3.0)
+    list(train_steps(state, bad_at(99, math.nan), 8, save=save, progress=False))
+    assert saved == [3, 6, 8]
 
 
 def test_the_last_step_is_saved_whatever_its_number(tmp_path: Path):
     path = tmp_path / "run.safetensors"
     state = TrainState.start(nn.Linear(3, 2), seed=1)
-    list(train_steps(state, bad_at(99, math.nan), 7, save=saver(path, every=5), progress=False))
+    list(train_steps(state, bad_at(99, math.nan), 7, save=saver(path, every=1e9), progress=False))
     assert resume_run(TrainState.start(nn.Linear(3, 2), seed=1), path).step == 7
 
 

@@ -84,6 +84,31 @@ def read_motion(
     return motion
 
 
+def read_motions(folder: str | Path) -> list[Motion]:
+    """Every file of a folder, and of the folders in it, that `read_motion` reads, by their names.
+
+    A MotionWarning names each file that cannot be read, and says why.
+    Raises MotionError if the folder does not exist, or no file in it can be read.
+    """
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise MotionError(f"{folder} is no folder with motions")
+    endings = set(registry.readers.names())
+    found = []
+    for path in sorted(folder.rglob("*")):
+        if path.suffix.lower() not in endings or not path.is_file():
+            continue
+        try:
+            found.append(read_motion(path))
+        except ValueError as error:
+            warnings.warn(f"left out: {error}", MotionWarning, stacklevel=2)
+    if not found:
+        raise MotionError(
+            f"no file in {folder} could be read as a motion; {', '.join(sorted(endings))} can"
+        )
+    return found
+
+
 @registry.readers.register(".bvh")
 def read_bvh_motion(
     path: Path,

@@ -10,6 +10,7 @@ from pathlib import Path
 import torch
 
 from ..conditions import clip as clips
+from ..motion.motion import MotionError
 from ..performers.dancer import Dancer
 from ..performers.mover import Mover
 from ..performers.walker import Walker
@@ -23,7 +24,7 @@ from .movers import MOVER, MOVER_RECIPES
 from .recordings import RecordingsError, recording_files
 from .train_dancer import train_dancer
 from .train_mover import train_mover
-from .train_walker import train
+from .train_walker import clips_of, train
 from .walkers import PAIRS, RECIPES, SHIPPED
 
 ALL = RECIPES | DANCE_RECIPES | MOVER_RECIPES | JUDGES
@@ -72,6 +73,15 @@ def main() -> None:
         help="a dancer, by name or file, whose ear the dancers take over (default: an ear is "
         "trained first, which takes longer than a dancer)",
     )
+    parser.add_argument(
+        "--data",
+        type=Path,
+        metavar="FOLDER",
+        help="train a walker on the motions in this folder (BVH, npz, ...), not on synthetic ones",
+    )
+    parser.add_argument(
+        "--device", help="cpu or cuda (default: a GPU, if there is one that torch can use)"
+    )
     parser.add_argument("--threads", type=int, default=torch.get_num_threads())
     arguments = parser.parse_args()
     unknown = set(arguments.names) - set(ALL)
@@ -79,7 +89,17 @@ def main() -> None:
         parser.error(
             f"no recipe is called {', '.join(sorted(unknown))}; there are: {', '.join(ALL)}"
         )
+    not_walkers = [name for name in arguments.names or ["all"] if name not in RECIPES]
+    if arguments.data and not_walkers:
+        parser.error(f"--data is for walkers ({', '.join(RECIPES)}), not {not_walkers[0]}")
+    if arguments.device:
+        try:
+            torch.empty(0, device=arguments.device)
+        except (RuntimeError, AssertionError) as error:
+            words = str(error).splitlines()[0]
+            parser.error(f"--device {arguments.device} cannot be used here: {words}")
     torch.set_num_threads(arguments.threads)
+    given = {"device": arguments.device, "data": arguments.data, "clip": arguments.clip}
     ear = None
     if arguments.ear:
         try:
@@ -90,8 +110,8 @@ def main() -> None:
     for name in arguments.names or buildable(EVERY):
         file = f"{name}.safetensors"
         try:
-            made = build(name, arguments.runs / file, arguments.out / file, arguments.clip, ear)
-        except (clips.ClipError, clips.NoTransformers, RecordingsError) as error:
+            made = build(name, arguments.runs / file, arguments.out / file, ear=ear, **given)
+        except (clips.ClipError, clips.NoTransformers, MotionError, RecordingsError) as error:
             parser.exit(1, f"{name}: {error}\n")
         print("wrote", made)
 
@@ -109,38 +129,47 @@ def buildable(names: list[str]) -> list[str]:
     return [name for name in names if name not in need]
 
 
-def build(
-    name: str, run: Path, out: Path, clip: str | None = None, ear: TrainedEar | None = None
-) -> Path:
+def build(name: str, run: Path, out: Path, device: str | None = None, **given) -> Path:
     """Train a recipe by its name, continuing `run` where there is one, and save it as `out`.
 
-    `clip` and `ear` are as in `trained`. A judge is saved in a folder of its own beside `out`.
+    `device` and `given` are as in `trained`. A judge is saved in a folder of its own beside `out`.
     """
     if name in JUDGES:
-        return save_judge(train_judge(JUDGES[name], run, say), out.parent / "judges" / out.name)
-    return save(trained(name, run, clip, ear), out, bits=8 if name in EIGHT_BITS else 16)
+        judge = train_judge(JUDGES[name], run, say, device)
+        return save_judge(judge, out.parent / "judges" / out.name)
+    made = trained(name, run, device=device, **given)
+    return save(made, out, bits=8 if name in EIGHT_BITS else 16)
 
 
 def trained(
-    name: str, run: Path, clip: str | None = None, ear: TrainedEar | None = None
+    name: str,
+    run: Path,
+    *,
+    device: str | None = None,
+    data: Path | None = None,
+    clip: str | None = None,
+    ear: TrainedEar | None = None,
 ) -> Walker | Dancer | Mover:
     """The performer of a recipe, trained, or continued from `run`.
 
-    `clip` is the folder of a CLIP, and `ear` a trained ear; recipes that need none leave them. If
-    the recipe continues another one, that is trained first; its run file lies beside `run`.
+    `data` is a folder with motions for a walker, `clip` the folder of a CLIP, and `ear` a trained
+    ear; recipes that need none leave them. If the recipe continues another one, that is trained
+    first; its run file lies beside `run`.
     """
     if name in DANCE_RECIPES:
         recipe = DANCE_RECIPES[name]
-        return train_dancer(recipe, run, log=say, ear=ear if getattr(recipe, "ear", None) else None)
+        own = ear if getattr(recipe, "ear", None) else None
+        return train_dancer(recipe, run, log=say, ear=own, device=device)
     if name in MOVER_RECIPES:
         recipe = MOVER_RECIPES[name]
         reader = clips.load(clip) if clip and recipe.config.clip else None
-        return train_mover(recipe, run, log=say, clip=reader)
+        return train_mover(recipe, run, log=say, clip=reader, device=device)
     recipe, first = RECIPES[name], None
     if recipe.begins_with:
         before = run.with_name(f"{recipe.begins_with}.safetensors")
-        first = trained(recipe.begins_with, before).model
-    return train(recipe, run, log=say, first=first)
+        first = trained(recipe.begins_with, before, data=data, device=device).model
+    own = clips_of(data) if data else None
+    return train(recipe, run, own, log=say, first=first, device=device)
 
 
 def say(line: str) -> None:

@@ -59,7 +59,6 @@ class DanceRecipe:
     motions: int = 0  # if not 0: so many walks and dances without music, instead of songs
     data_seed: int = 1
     seed: int = 0
-    save_every: int = 250  # steps
 
 
 @dataclass(frozen=True)

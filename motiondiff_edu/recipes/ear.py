@@ -47,7 +47,6 @@ class EarRecipe:
     seconds: float = 20.0
     data_seed: int = 1
     seed: int = 0
-    save_every: int = 250  # steps
 
 
 EAR = EarRecipe()
@@ -138,17 +137,21 @@ def ear_within(dancer: Dancer) -> TrainedEar:
     return TrainedEar(dancer.model.ear, dancer.mel_scaler, card)
 
 
-def ear_of(recipe: EarRecipe, folder: Path, log=print) -> TrainedEar:
+def ear_of(recipe: EarRecipe, folder: Path, log=print, device: str | None = None) -> TrainedEar:
     """The ear of a recipe, trained first if that was not done.
 
     Its run lies in the folder, where all dancers with this ear find it.
     """
     made_of = digest_of_texts({"recipe": repr(recipe)})[:8]
-    return train_ear(recipe, folder / f"ear-{made_of}.run.safetensors", log=log)
+    return train_ear(recipe, folder / f"ear-{made_of}.run.safetensors", log=log, device=device)
 
 
 def train_ear(
-    recipe: EarRecipe, run_file: Path, songs: HeardSongs | None = None, log=print
+    recipe: EarRecipe,
+    run_file: Path,
+    songs: HeardSongs | None = None,
+    log=print,
+    device: str | None = None,
 ) -> TrainedEar:
     """Train by a recipe, or continue the run in `run_file`.
 
@@ -174,6 +177,7 @@ def train_ear(
         Provenance(about, {"songs": len(songs)}, "data_synth.music, synthetic"),
         warmup=300,
         log=log,
+        device=device,
     )
     kept = ("parameters", "songs", "minutes", "final_loss")
     return TrainedEar(trained, songs.scaler, {name: card[name] for name in kept})

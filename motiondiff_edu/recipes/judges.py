@@ -44,13 +44,12 @@ class JudgeRecipe:
     clips: int = 12_000
     data_seed: int = 1
     seed: int = 0
-    save_every: int = 250  # steps
 
 
 JUDGES = {f"judge-{seed}": JudgeRecipe(f"judge-{seed}", seed=seed) for seed in SEEDS}
 
 
-def train_judge(recipe: JudgeRecipe, run_file: Path, log=print) -> Judge:
+def train_judge(recipe: JudgeRecipe, run_file: Path, log=print, device: str | None = None) -> Judge:
     """Train by a recipe, or continue the run in `run_file`; return a judge with averaged weights.
 
     Raises ValueError when the run in `run_file` was begun with other settings.
@@ -67,6 +66,7 @@ def train_judge(recipe: JudgeRecipe, run_file: Path, log=print) -> Judge:
         Provenance({"data": digest(windows)}, {"clips": len(windows)}, "data_synth.actions"),
         warmup=100,
         log=log,
+        device=device,
     )
     return Judge(trained, windows.scaler, windows.words, card)
 

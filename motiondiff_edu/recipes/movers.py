@@ -36,7 +36,6 @@ class MoverRecipe:
     clips: int = 12_000
     data_seed: int = 1
     seed: int = 0
-    save_every: int = 250  # steps
 
 
 MOVER_PLAIN = MoverRecipe(

@@ -16,11 +16,11 @@ from ..training import Saving, TrainState
 
 
 def saver(
-    path: str | Path, about: dict | None = None, notes: list | None = None, every: int = 1000
+    path: str | Path, about: dict | None = None, notes: list | None = None, every: float = 300.0
 ) -> Saving:
     """A `Saving` for `training.train_steps` that writes the run to this file.
 
-    `about` and `notes` are as in `save_run`.
+    `about` and `notes` are as in `save_run`; `every` counts seconds of training.
     """
     return Saving(lambda state: save_run(state, path, about, notes), every)
 

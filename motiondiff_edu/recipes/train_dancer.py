@@ -82,7 +82,7 @@ def _motion_windows(count: int, seed: int, seconds: float, frames: int) -> Dance
 
 NOT_DATA = (
     "name", "config", "steps", "kinematic", "loss_weights", "snr", "lr", "optimizer", "batch",
-    "decay", "seed", "save_every", "path_scale", "sizes", "stages",
+    "decay", "seed", "path_scale", "sizes", "stages",
 )  # fmt: skip
 
 
@@ -160,9 +160,11 @@ def train_dancer(
     windows: DanceWindows | None = None,
     log=print,
     ear: TrainedEar | None = None,
+    device: str | None = None,
 ) -> Dancer:
     """Train by a recipe, or continue the run in `run_file`; return a dancer with averaged weights.
 
+    `device` is as in `train_recipe`.
     `ear`: a trained one for a recipe with an ear; without it, one is trained first.
     Raises ValueError when the run in `run_file` was begun with other settings, or `ear` is not of
     the recipe's kind.
@@ -179,7 +181,7 @@ def train_dancer(
     if getattr(recipe.config, "ear", None):
         if not (ear or getattr(recipe, "ear", None)):
             raise ValueError(f"{recipe.name} needs an ear: pass `ear`, or use a SongRecipe")
-        trained_ear = ear or ear_of(recipe.ear, run_file.parent, log)
+        trained_ear = ear or ear_of(recipe.ear, run_file.parent, log, device)
         model.ear.load_state_dict(trained_ear.hearing(windows.mel_scaler).state_dict())
         about["ear"] = digest_of_tensors(trained_ear.ear.state_dict())[:16]
         facts["ear"] = trained_ear.card
@@ -195,6 +197,7 @@ def train_dancer(
         Provenance(about, facts, source),
         warmup=300,
         log=log,
+        device=device,
     )
     return Dancer(trained, schedule, windows.motion_scaler, windows.mel_scaler, card)
 

@@ -115,9 +115,11 @@ def train_mover(
     windows: DescribedWindows | None = None,
     log=print,
     clip: Clip | None = None,
+    device: str | None = None,
 ) -> Mover:
     """Train by a recipe, or continue the run in `run_file`; return a mover with averaged weights.
 
+    `device` is as in `train_recipe`.
     With `plan_steps`, the network for timelines is then trained further (`train_planner`).
 
     A network for motions alone (`config.D` = 66) is not shown the timelines of the windows.
@@ -157,10 +159,11 @@ def train_mover(
     texts_of = texts_by(clip, windows) if clip else texts_as_ids
     loss_fn = loss_of(recipe, windows, schedule, texts_of)
     both = replace(recipe, plan_steps=0)
-    trained, card = train_recipe(both, run_file, model, loss_fn, provenance, warmup=WARMUP, log=log)
+    how = {"warmup": WARMUP, "log": log, "device": device}
+    trained, card = train_recipe(both, run_file, model, loss_fn, provenance, **how)
     if recipe.plan_steps:
         plan_loss = plan_loss_of(recipe, windows, schedule, texts_of)
-        further = train_planner(recipe, run_file, trained, plan_loss, provenance, log)
+        further = train_planner(recipe, run_file, trained, plan_loss, provenance, log, device)
         card["recipe"]["plan_steps"] = recipe.plan_steps
         card["planner"] = further
         card["minutes"] = round(card["minutes"] + further["minutes"], 1)
@@ -175,6 +178,7 @@ def train_planner(
     loss_fn: LossFn,
     provenance: Provenance,
     log: Callable[[str], object],
+    device: str | None = None,
 ) -> dict:
     """Train the network for timelines of a trained mover further, alone; return the run's card.
 
@@ -191,7 +195,8 @@ def train_planner(
     own = replace(provenance, about=provenance.about | begins)
     file = run_file.with_name(f"{run_file.stem}-planner{run_file.suffix}")
     planner = copy.deepcopy(model.planner).requires_grad_(True)
-    trained, card = train_recipe(alone, file, planner, loss_fn, own, warmup=WARMUP, log=log)
+    how = {"warmup": WARMUP, "log": log, "device": device}
+    trained, card = train_recipe(alone, file, planner, loss_fn, own, **how)
     model.planner.load_state_dict(trained.state_dict())
     return {name: card[name] for name in ("minutes", "sittings", "final_loss")} | begins
 

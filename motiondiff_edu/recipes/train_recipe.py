@@ -16,6 +16,8 @@ from ..training import LossFn, TrainState, cosine_lr, train_steps
 from .muon import optimizer_for
 from .runs import notes_of, resume_run, saver
 
+LOG_EVERY, SAVE_EVERY = 30.0, 300.0  # seconds of training
+
 
 @runtime_checkable
 class AnyRecipe(Protocol):
@@ -28,7 +30,6 @@ class AnyRecipe(Protocol):
     optimizer: str
     decay: float
     seed: int
-    save_every: int  # steps
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,7 @@ def train_recipe(
     warmup: int,
     log: Callable[[str], object],
     before: Callable[[int], object] | None = None,
+    device: str | None = None,
 ) -> tuple[nn.Module, dict]:
     """Train (or continue) a fresh network; `run_file` holds the run.
 
@@ -57,9 +59,10 @@ def train_recipe(
 
     `warmup`: steps in which the rate rises, at most a quarter of all.
     `before`: as in `train_steps`.
+    `device`: where it is trained; by default on a GPU, if there is one.
     Raises ValueError when the run in `run_file` was begun with other settings.
     """
-    device = "cuda" if torch.cuda.is_available() else "cpu"
+    device = device or ("cuda" if torch.cuda.is_available() else "cpu")
     model = model.to(device)
     optimizer = optimizer_for(model, recipe.optimizer)
     state = TrainState.start(model, recipe.seed, optimizer, recipe.decay)
@@ -71,7 +74,7 @@ def train_recipe(
     if state.step < recipe.steps:
         sittings = [*sittings, {"from_step": state.step, **where(device)}]
     rate = cosine_lr(recipe.lr, recipe.steps, warmup=min(warmup, recipe.steps // 4))
-    save = saver(run_file, about, sittings, recipe.save_every)
+    save = saver(run_file, about, sittings, SAVE_EVERY)
     run_to_end(recipe, rate, state, loss_fn, save, log, before)
     if before:  # the final loss is that of the end, also of a run that had nothing to do
         before(state.step)
@@ -98,14 +101,15 @@ def run_to_end(
     log,
     before=None,
 ) -> None:
-    """Train to the last step, with a line of log every 1000 steps, or twenty times in all."""
-    losses, every = [], min(1000, max(1, recipe.steps // 20))
+    """Train to the last step, with a line of log every LOG_EVERY seconds, and at the end."""
+    losses, logged = [], state.seconds
     how = {"lr": rate, "save": save, "before": before, "progress": False}
     for report in train_steps(state, loss_fn, recipe.steps, **how):
         losses.append(report.loss)
-        if report.step % every == 0:
-            mean, minutes = np.mean(losses[-every:]), state.seconds / 60
+        if state.seconds - logged >= LOG_EVERY or report.step == recipe.steps:
+            mean, minutes = np.mean(losses), state.seconds / 60
             log(f"{recipe.name} {report.step}/{recipe.steps}: loss {mean:.5f}, {minutes:.1f} min")
+            losses, logged = [], state.seconds
 
 
 def final_loss(recipe: AnyRecipe, loss_fn: LossFn, network: nn.Module) -> float:
@@ -139,7 +143,9 @@ def where(device: str) -> dict:
     return {
         "commit": commit_of(Path(__file__).parents[2]),
         "date": datetime.date.today().isoformat(),
-        "machine": torch.cuda.get_device_name() if device == "cuda" else platform.machine(),
+        "machine": torch.cuda.get_device_name()
+        if device.startswith("cuda")
+        else platform.machine(),
         "threads": torch.get_num_threads(),
         "torch": torch.__version__,
     }

@@ -24,6 +24,8 @@ from ..diffusion_dropout import Dropout, dropout_rate
 from ..modiff import training_loss
 from ..motion.augment import mirror, reverse_time
 from ..motion.clip import Clip
+from ..motion.files import read_motions
+from ..motion.root_frame import FPS
 from ..performers.networks import network
 from ..performers.walker import Walker
 from ..performers.windows import Windows, typical_change
@@ -45,17 +47,28 @@ def training_clips(recipe: Recipe) -> list[Clip]:
     return both + [reverse_time(clip) for clip, take in zip(both, chosen, strict=True) if take]
 
 
+def clips_of(folder: Path) -> list[Clip]:
+    """One's own motions for a walker: the files of a folder, at 20 frames/s, and mirrored.
+
+    Raises MotionError if none can be read.
+    """
+    clips = [motion.resampled(FPS).rooted().to_clip() for motion in read_motions(folder)]
+    return [version for clip in clips for version in (clip, mirror(clip))]
+
+
 def train(
     recipe: Recipe,
     run_file: Path,
     clips: list[Clip] | None = None,
     log=print,
     first: nn.Module | None = None,
+    device: str | None = None,
 ) -> Walker:
     """Train (or continue) a recipe; `run_file` holds the run.
 
     Returns the averaged network as a walker.
     `first` is the trained network that the recipe begins with, if it names one.
+    `device` is as in `train_recipe`.
 
     Raises ValueError when the run in `run_file` was begun with other settings, and when `first` is
     missing or not wanted.
@@ -65,6 +78,7 @@ def train(
         if recipe.begins_with:
             advice = f"the network of {recipe.begins_with}: pass it as `first`"
         raise ValueError(f"{recipe.name} begins with {advice}")
+    source = "data_synth.walking, synthetic" if clips is None else f"{len(clips)} given clips"
     begun = prepared(recipe, training_clips(recipe) if clips is None else clips)
     windows = begun.windows
     begins = {}
@@ -78,10 +92,11 @@ def train(
         run_file,
         begun.model,
         begun.loss_fn,
-        Provenance(about, facts, "data_synth.walking, synthetic"),
+        Provenance(about, facts, source),
         warmup=500,
         log=log,
         before=begun.dropout.now if begun.dropout else None,
+        device=device,
     )
     return begun.walker(trained, card)
 

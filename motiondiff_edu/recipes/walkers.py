@@ -62,7 +62,6 @@ class Recipe:
     data_seed: int = 1
     seed: int = 0
     styles: tuple[str, ...] | None = None  # of walking; None: all
-    save_every: int = 2000  # steps
 
     def __post_init__(self):
         """Raises ValueError for batch or noises under 1, and an unknown schedule or optimizer."""
@@ -100,7 +99,6 @@ WALKER_PLAIN = replace(
     steps=12_000,
     lr=1e-3,
     seed=1,
-    save_every=500,
 )
 WALKER = replace(
     WALKER_PLAIN, name="walker", dropout=P_D, dropout_start=0.0, noised_past_weight=0.2
@@ -149,7 +147,6 @@ MEND_PLAIN = replace(
     lr=3e-3,
     past_noise=0.0,
     clips=360,
-    save_every=500,
 )
 MEND_DROPOUT = replace(MEND_PLAIN, name="mend-dropout", dropout=P_D)
 PAIRS = tuple(

@@ -10,7 +10,7 @@ from motiondiff_edu.beyond.self_attention import (
     from_both_ends,
 )
 from motiondiff_edu.cross_modal_attention import angles_of
-from motiondiff_edu.mofusion import MoFusion, MoFusionConfig, Level
+from motiondiff_edu.mofusion import Level, MoFusion, MoFusionConfig
 
 CONFIG = MoFusionConfig(D=5, C=6, S=20, widths=(16, 24, 32), heads=2, music_layers=0)
 

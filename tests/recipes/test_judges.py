@@ -22,7 +22,7 @@ from motiondiff_edu.recipes.judges import (
     train_judge,
 )
 
-SHORT = JudgeRecipe("tiny", SpaceConfig(8), steps=4, frames=700, clips=30, save_every=2)
+SHORT = JudgeRecipe("tiny", SpaceConfig(8), steps=4, frames=700, clips=30)
 
 
 @pytest.fixture(scope="module")
@@ -81,4 +81,5 @@ def test_the_cards_of_the_shipped_judges_have_their_recipes():
     for judge, recipe in zip(judges(), JUDGES.values(), strict=True):
         is_now = json.loads(json.dumps(asdict(recipe)))
         assert judge.card["name"] == is_now.pop("name") and is_now.pop("config")
-        assert judge.card["recipe"] == is_now
+        # how often a run was saved is none of a recipe
+        assert {k: v for k, v in judge.card["recipe"].items() if k != "save_every"} == is_now

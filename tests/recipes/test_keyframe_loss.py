@@ -31,7 +31,7 @@ from motiondiff_edu.recipes.train_dancer import (
 
 T = 32
 SMALL = KeyframeConfig(S=60, widths=(16, 24), heads=2)
-RECIPE = replace(INBETWEENS, config=SMALL, steps=3, batch=4, frames=T, save_every=2)
+RECIPE = replace(INBETWEENS, config=SMALL, steps=3, batch=4, frames=T)
 
 
 def seeded(seed: int = 0) -> torch.Generator:

@@ -91,7 +91,7 @@ def test_a_resumed_run_continues_bit_for_bit(tmp_path: Path):
         return [r.loss for r in train_steps(state, block_loss, steps, save=save, progress=False)]
 
     whole = run(start(), 12)
-    run(start(), 5, saver(tmp_path / "run", every=5))
+    run(start(), 5, saver(tmp_path / "run"))
     state = resume_run(start(), tmp_path / "run")
     assert state.step == 5 and run(state, 12) == whole[5:]
     forgetful = resume_run(

@@ -28,7 +28,7 @@ from motiondiff_edu.training import TrainState, train_steps
 TINY = TextMoFusionConfig(
     widths=(16, 24), heads=2, C=20, S=20, clip="somebody/tiny", clip_width=tiny_clip.WIDTH
 )
-SHORT = MoverRecipe("tiny", TINY, steps=6, clips=10, frames=200, save_every=2, no_text=0.2)
+SHORT = MoverRecipe("tiny", TINY, steps=6, clips=10, frames=200, no_text=0.2)
 
 
 @pytest.fixture(scope="module")

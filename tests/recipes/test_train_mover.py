@@ -28,7 +28,7 @@ from motiondiff_edu.recipes.train_recipe import Provenance
 
 SIZES = {"widths": (16, 24), "heads": 2, "C": 20, "S": 20, "word_layers": 1}
 TINY = TextMoFusionConfig(**SIZES)
-SHORT = MoverRecipe("tiny", TINY, steps=6, clips=10, frames=200, save_every=2)
+SHORT = MoverRecipe("tiny", TINY, steps=6, clips=10, frames=200)
 
 
 @pytest.fixture(scope="module")
@@ -171,7 +171,7 @@ def test_the_network_for_timelines_is_trained_further_and_the_other_stays(planne
         train_mover(longer, run, planned, log=until)
     resumed = train_mover(longer, run, planned, log=quiet)
     assert same(resumed.model, whole.model)
-    assert [one["from_step"] for one in resumed.card["planner"]["sittings"]] == [0, 2]
+    assert [one["from_step"] for one in resumed.card["planner"]["sittings"]] == [0, 3]
 
 
 def test_the_further_training_begins_with_the_trained_network(planned, tmp_path):

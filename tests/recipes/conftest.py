@@ -1,0 +1,11 @@
+"""Runs are saved and logged after every step, so that a killed one goes on where it was killed."""
+
+import pytest
+
+from motiondiff_edu.recipes import train_recipe
+
+
+@pytest.fixture(autouse=True)
+def after_every_step(monkeypatch):
+    monkeypatch.setattr(train_recipe, "SAVE_EVERY", 0.0)
+    monkeypatch.setattr(train_recipe, "LOG_EVERY", 0.0)
