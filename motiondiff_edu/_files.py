@@ -2,9 +2,12 @@
 
 import hashlib
 import os
+import platform
+import re
 import secrets
+import zlib
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 
@@ -13,12 +16,14 @@ def replacing(path: str | Path) -> Iterator[Path]:
     """Yield a temporary name beside `path`; it is renamed to `path`, or removed after an error.
 
     with replacing("walk.bvh") as aside: aside.write_text(...)
-    `~` is the home folder.
+    `~` is the home folder. What a killed process left of the same file is removed first.
     """
     path = Path(path).expanduser()
     path.parent.mkdir(parents=True, exist_ok=True)
+    _remove_left_over(path)
     # a name of its own for each writer, including threads; files of tempfile would be private
-    aside = path.with_name(f".{path.name}.{os.getpid()}.{secrets.token_hex(4)}.part")
+    writer = f"{_machine()}.{os.getpid()}.{secrets.token_hex(4)}"
+    aside = path.with_name(f".{path.name}.{writer}.part")
     try:
         yield aside
         os.replace(aside, path)
@@ -28,6 +33,34 @@ def replacing(path: str | Path) -> Iterator[Path]:
         raise
     finally:
         aside.unlink(missing_ok=True)
+
+
+def _machine() -> str:
+    """Four letters for this machine; several may write to one shared folder."""
+    return f"{zlib.crc32(platform.node().encode()) & 0xFFFF:04x}"
+
+
+def _remove_left_over(path: Path) -> None:
+    """Remove temporary files of `path` whose process, on this machine, runs no more."""
+    form = re.compile(rf"\.{re.escape(path.name)}\.{_machine()}\.(\d+)\.[0-9a-f]{{8}}\.part")
+    with suppress(OSError):  # a folder may be written to, but not listed
+        for one in path.parent.iterdir():
+            found = form.fullmatch(one.name)
+            if found and not _runs(int(found[1])):
+                one.unlink(missing_ok=True)
+
+
+def _runs(process: int) -> bool:
+    """Whether a process runs.  On Windows, where asking by a signal would end it: always True."""
+    if os.name == "nt":
+        return True
+    try:
+        os.kill(process, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except OSError:  # it runs for another user
+        return True
+    return True
 
 
 def digest_of_tensors(tensors: Mapping[str, "torch.Tensor"]) -> str:

@@ -14,7 +14,6 @@ import html
 import json
 import math
 import os
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -29,7 +28,7 @@ from numpy.typing import ArrayLike
 from .._files import replacing
 from ..motion.checks import checked_rate, is_number
 from ..viz import body, style
-from . import lane, module, packing, poster, sound
+from . import films, lane, module, packing, poster
 from .lane import Soundtrack
 from .still import page_on_picture, with_still
 
@@ -276,32 +275,12 @@ class Player(anywidget.AnyWidget):
     def save_mp4(self, path: str | os.PathLike, size: tuple[int, int] = (480, 432)) -> Path:
         """Write the figure as MP4, each figure `size` pixels, with its sound.
 
-        ImportError without imageio-ffmpeg.
+        Raises as `films.write_mp4`: ImportError without imageio-ffmpeg, FilmError if it fails.
         """
-        try:
-            import imageio_ffmpeg
-        except ImportError as error:
-            raise ImportError(
-                "save_mp4 needs the package imageio-ffmpeg; save_gif does not"
-            ) from error
-        width = size[0] * len(self._figures)
-        with replacing(path) as part, tempfile.TemporaryDirectory() as folder:
-            extra = {}
-            if self._music is not None:
-                wave, file = self._music.sound, Path(folder) / "sound.wav"
-                file.write_bytes(sound.encode(wave.samples, wave.sample_rate, "wav")[0])
-                extra = {"audio_path": str(file), "audio_codec": "aac", "ffmpeg_log_level": "error"}
-            writer = imageio_ffmpeg.write_frames(
-                str(part), (width, size[1]), fps=self._options["fps"], macro_block_size=2,
-                output_params=["-f", "mp4"], **extra,
-            )  # fmt: skip
-            try:
-                writer.send(None)
-                for picture in poster.film(self._figures, self._options["fps"], size):
-                    writer.send(np.ascontiguousarray(picture))
-            finally:
-                writer.close()  # on an error, too: ffmpeg must let go of the file
-        return Path(path).expanduser()
+        fps = self._options["fps"]
+        pictures = poster.film(self._figures, fps, size)
+        music = None if self._music is None else self._music.sound
+        return films.write_mp4(path, pictures, (size[0] * len(self._figures), size[1]), fps, music)
 
 
 def _hundredths(n: int, fps: float) -> list[int]:
