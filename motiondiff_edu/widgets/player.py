@@ -123,8 +123,8 @@ class Player(anywidget.AnyWidget):
     `past` frames were given and are drawn paler; `contacts` (T, 2) bool marks planted feet; `path`
     (n, 2) [x, z] is drawn on the floor; each may be one value for all figures or a list (one array
     of contacts belongs to the first figure).
-    `audio`: (N,) from -1 to 1 at 16 kHz, the bytes of a sound file, or a `Soundtrack`. It is played
-    with the motion, cut or filled up to its length (with a warning), above its waveform.
+    `audio`: the bytes of a sound file, or a `Soundtrack`, which takes samples with their rate. It
+    is played with the motion, cut or filled up to its length (with a warning), above its waveform.
     `look`: layout, height, autoplay, and the parents of another skeleton's joints.
     `frame` and `playing` can be read and set.
     Raises ValueError with figure, frame and joint where a position is not finite or beyond reach,
