@@ -21,9 +21,7 @@ def replacing(path: str | Path) -> Iterator[Path]:
     path = Path(path).expanduser()
     path.parent.mkdir(parents=True, exist_ok=True)
     _remove_left_over(path)
-    # a name of its own for each writer, including threads; files of tempfile would be private
-    writer = f"{_machine()}.{os.getpid()}.{secrets.token_hex(4)}"
-    aside = path.with_name(f".{path.name}.{writer}.part")
+    aside = _aside(path)
     try:
         yield aside
         os.replace(aside, path)
@@ -33,6 +31,33 @@ def replacing(path: str | Path) -> Iterator[Path]:
         raise
     finally:
         aside.unlink(missing_ok=True)
+
+
+def check_writable(path: str | Path) -> None:
+    """Raise OSError unless a file of that name can be made; to be asked before long work.
+
+    A temporary file is made and removed; folders that are not there are made with the file itself.
+    """
+    path = Path(path).expanduser().absolute()
+    there = next((folder for folder in path.parents if folder.exists()), None)
+    if there is None:  # a drive of Windows that is not there
+        raise OSError(f"{path}: there is no {path.anchor}; choose another place")
+    if not there.is_dir():
+        raise OSError(f"{path}: {there} is a file, not a folder; choose another place")
+    probe = _aside(there / path.name)
+    try:
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise OSError(
+            f"{path}: no file can be made in {there} ({error.strerror}); choose another place"
+        ) from None
+
+
+def _aside(path: Path) -> Path:
+    """A temporary name beside `path`, of its own for each writer, including threads."""
+    writer = f"{_machine()}.{os.getpid()}.{secrets.token_hex(4)}"
+    return path.with_name(f".{path.name}.{writer}.part")  # a file of tempfile would be private
 
 
 def _machine() -> str:

@@ -12,7 +12,7 @@ import notebook_cells
 import pytest
 
 from motiondiff_edu import _files
-from motiondiff_edu._files import replacing
+from motiondiff_edu._files import check_writable, replacing
 
 ROOT = Path(__file__).parent.parent
 
@@ -160,7 +160,7 @@ def test_a_message_names_the_file_that_was_asked_for(tmp_path):
 def test_what_a_killed_write_left_is_removed_by_the_next(tmp_path):
     """Not what a running process writes, or what belongs to another file or another machine."""
     script = (
-        "import sys, time\nfrom motiondiff_edu._files import replacing\n"
+        "import sys, time\nfrom motiondiff_edu._files import check_writable, replacing\n"
         "with replacing(sys.argv[1]) as aside:\n"
         "    aside.write_text('half'); print(aside.name, flush=True); time.sleep(600)\n"
     )
@@ -170,22 +170,33 @@ def test_what_a_killed_write_left_is_removed_by_the_next(tmp_path):
         subprocess.Popen([*command, str(one)], stdout=subprocess.PIPE, text=True)
         for one in (path, path, other)
     ]
-    killed, running, of_another = (writer.stdout.readline().strip() for writer in writers)
-    for writer in (writers[0], writers[2]):
-        writer.kill()
-        writer.wait()
-    elsewhere = killed.replace(f".{_files._machine()}.", ".zzzz.")
-    (tmp_path / elsewhere).write_text("of another machine")
-    left = sorted([killed, running, of_another, elsewhere])
-    assert sorted(one.name for one in tmp_path.iterdir()) == left
     try:
+        killed, running, of_another = (writer.stdout.readline().strip() for writer in writers)
+        for writer in (writers[0], writers[2]):
+            writer.kill()
+            writer.wait()
+        elsewhere = killed.replace(f".{_files._machine()}.", ".zzzz.")
+        (tmp_path / elsewhere).write_text("of another machine")
+        left = {killed, running, of_another, elsewhere}
+        assert {one.name for one in tmp_path.iterdir()} == left
         with replacing(path) as aside:
             aside.write_text("whole")
-        left = sorted([running, of_another, elsewhere, path.name])
-        assert sorted(one.name for one in tmp_path.iterdir()) == left
+        left = {running, of_another, elsewhere, path.name}
+        assert {one.name for one in tmp_path.iterdir()} == left
     finally:
-        writers[1].kill()
-        writers[1].wait()
+        for writer in writers:
+            writer.kill()
+            writer.wait()
+
+
+def test_a_place_is_tried_and_left_as_it_was(tmp_path):
+    check_writable(tmp_path / "new" / "folder" / "walk.bvh")
+    assert not any(tmp_path.iterdir())
+    (tmp_path / "file").touch()
+    with pytest.raises(OSError, match="file is a file, not a folder; choose another place"):
+        check_writable(tmp_path / "file" / "walk.bvh")
+    with pytest.raises(OSError, match="name too long.; choose another place"):
+        check_writable(tmp_path / ("x" * 300 + ".bvh"))
 
 
 @pytest.mark.parametrize(
