@@ -2,7 +2,6 @@
 
 An encoder can fail late, on a full disk for example, after every picture was taken. So a film gets
 its name only after ffmpeg has ended without an error and every picture can be read back.
-Notebook: 00
 """
 
 import os
@@ -16,7 +15,7 @@ from threading import Timer
 import numpy as np
 from PIL import Image
 
-from .._files import replacing
+from .._files import check_writable, replacing
 from . import sound
 from .sound import Sound
 
@@ -37,14 +36,16 @@ def write_mp4(
 ) -> Path:
     """Write pictures of `size` pixels as MP4, with a sound.
 
-    Raises ImportError without imageio-ffmpeg, and FilmError if ffmpeg fails, does not answer, or
-    leaves a film that cannot be read; a film that was there before is still there.
+    Raises ImportError without imageio-ffmpeg, OSError for a place where no file can be made, and
+    FilmError if ffmpeg fails, does not answer, or leaves a film that cannot be read; a film that
+    was there before is still there.
     """
     try:
         import imageio_ffmpeg
     except ImportError as error:
         raise ImportError("save_mp4 needs the package imageio-ffmpeg; save_gif does not") from error
     path = Path(path).expanduser()
+    check_writable(path)
     with replacing(path) as part, tempfile.TemporaryDirectory() as folder:
         command = [imageio_ffmpeg.get_ffmpeg_exe(), "-y", "-v", "error"]
         command += ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}"]

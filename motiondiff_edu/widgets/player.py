@@ -25,7 +25,7 @@ import numpy as np
 import traitlets
 from numpy.typing import ArrayLike
 
-from .._files import replacing
+from .._files import check_writable, replacing
 from ..motion.checks import checked_rate, is_number
 from ..viz import body, style
 from . import films, lane, module, packing, poster
@@ -253,7 +253,11 @@ class Player(anywidget.AnyWidget):
         return Path(path).expanduser()
 
     def save_gif(self, path: str | os.PathLike, size: tuple[int, int] = (400, 360)) -> Path:
-        """Write the figure as an endless GIF, each figure `size` pixels."""
+        """Write the figure as an endless GIF, each figure `size` pixels.
+
+        Raises OSError, before a picture is drawn, for a place where no file can be made.
+        """
+        check_writable(path)
         palette = poster.film_palette(self._figures, size)
         fps = self._options["fps"]
         every = math.ceil(fps / GIF_FPS)
