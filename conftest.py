@@ -3,8 +3,8 @@
 It is set before any test begins.
 
 librosa compiles with numba, which keeps what it compiled in files. Two processes that fill one
-folder at the same time leave halves that do not fit together, and who reads them next dies (numba
-issue 10128).
+folder at the same time leave halves that do not fit together, and the next process that reads them
+crashes (numba issue 10128).
 """
 
 import os

@@ -70,7 +70,7 @@ def players(seconds: float) -> dict[str, Player]:
     audio, beats = click_track(seconds), np.arange(0, seconds, BEAT)
     weights, times = attention(frames, seconds, 125)
     heard = Listening(weights, times, moved=0.2 * weights.max(1), hit=2.0)
-    track = Soundtrack(audio, beats, beats[::4])
+    track = Soundtrack(audio, beats, beats[::4], sample_rate=RATE)
     return {
         "silent": Player(positions),
         "sound": Player(positions, audio=track),

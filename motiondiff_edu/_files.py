@@ -2,9 +2,12 @@
 
 import hashlib
 import os
+import platform
+import re
 import secrets
+import zlib
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 
@@ -13,12 +16,12 @@ def replacing(path: str | Path) -> Iterator[Path]:
     """Yield a temporary name beside `path`; it is renamed to `path`, or removed after an error.
 
     with replacing("walk.bvh") as aside: aside.write_text(...)
-    `~` is the home folder.
+    `~` is the home folder. What a killed process left of the same file is removed first.
     """
     path = Path(path).expanduser()
     path.parent.mkdir(parents=True, exist_ok=True)
-    # a name of its own for each writer, including threads; files of tempfile would be private
-    aside = path.with_name(f".{path.name}.{os.getpid()}.{secrets.token_hex(4)}.part")
+    _remove_left_over(path)
+    aside = _aside(path)
     try:
         yield aside
         os.replace(aside, path)
@@ -28,6 +31,61 @@ def replacing(path: str | Path) -> Iterator[Path]:
         raise
     finally:
         aside.unlink(missing_ok=True)
+
+
+def check_writable(path: str | Path) -> None:
+    """Raise OSError unless a file of that name can be made; to be asked before long work.
+
+    A temporary file is made and removed; folders that are not there are made with the file itself.
+    """
+    path = Path(path).expanduser().absolute()
+    there = next((folder for folder in path.parents if folder.exists()), None)
+    if there is None:  # a drive of Windows that is not there
+        raise OSError(f"{path}: there is no {path.anchor}; choose another place")
+    if not there.is_dir():
+        raise OSError(f"{path}: {there} is a file, not a folder; choose another place")
+    probe = _aside(there / path.name)
+    try:
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise OSError(
+            f"{path}: no file can be made in {there} ({error.strerror}); choose another place"
+        ) from None
+
+
+def _aside(path: Path) -> Path:
+    """A temporary name beside `path`, of its own for each writer, including threads."""
+    writer = f"{_machine()}.{os.getpid()}.{secrets.token_hex(4)}"
+    return path.with_name(f".{path.name}.{writer}.part")  # a file of tempfile would be private
+
+
+def _machine() -> str:
+    """Four letters for this machine; several may write to one shared folder."""
+    return f"{zlib.crc32(platform.node().encode()) & 0xFFFF:04x}"
+
+
+def _remove_left_over(path: Path) -> None:
+    """Remove temporary files of `path` whose process, on this machine, runs no more."""
+    form = re.compile(rf"\.{re.escape(path.name)}\.{_machine()}\.(\d+)\.[0-9a-f]{{8}}\.part")
+    with suppress(OSError):  # a folder may be written to, but not listed
+        for one in path.parent.iterdir():
+            found = form.fullmatch(one.name)
+            if found and not _runs(int(found[1])):
+                one.unlink(missing_ok=True)
+
+
+def _runs(process: int) -> bool:
+    """Whether a process runs.  On Windows, where asking by a signal would end it: always True."""
+    if os.name == "nt":
+        return True
+    try:
+        os.kill(process, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except OSError:  # it runs for another user
+        return True
+    return True
 
 
 def digest_of_tensors(tensors: Mapping[str, "torch.Tensor"]) -> str:

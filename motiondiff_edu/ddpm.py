@@ -403,9 +403,9 @@ def ddim_steps(
 ) -> Iterator[Step]:
     """Leap from x_S to x0 in a few `ddim_step`s, and yield a record of each, and of s = 0.
 
-    With eta = 0 no noise is drawn. Few steps with eta = 0 give samples that vary too little, so
-    DDIM is not just a faster DDPM. noise[s - 1], if given, is the noise of step s. `clip` clamps
-    x0_hat.
+    With eta = 0 no noise is drawn. After few steps samples of a Gaussian then vary too little, so
+    DDIM is not just a faster DDPM; those of other data, or of a network, need not. noise[s - 1], if
+    given, is the noise of step s. `clip` clamps x0_hat.
     Raises ValueError for steps that do not decrease or are outside 1..S, and for eta outside 0..1.
     Notebook: 03
     """

@@ -15,18 +15,20 @@ import numpy as np
 import pytest
 import soundfile
 import torch
+from browser import PATIENCE
 
 import motiondiff_edu as md
 from data_synth.music import compose
 from data_synth.walking import walk
 from motiondiff_edu import __main__ as command
-from motiondiff_edu import _commands
+from motiondiff_edu import _commands, _files
 from motiondiff_edu._commands import control_words, edit, outputs
 from motiondiff_edu.course import doctor
 from motiondiff_edu.editing.by_words import STRENGTH
 from motiondiff_edu.motion.motion import MotionError
 from motiondiff_edu.motion.skeleton import JOINTS
 from motiondiff_edu.performers.dancer import USUAL_GUIDANCE
+from motiondiff_edu.pretrained import by_name, checkpoints
 
 ARM = "RightArm,RightForeArm,RightHand"
 
@@ -87,18 +89,123 @@ def test_info_describes_every_file_that_can_be_read(folder, capsys):
     assert "info: 2 of 3 files cannot be read" in told.err
 
 
+# every verb, as it works
+VERBS = {
+    "walk": ["my_walk.bvh", "--control", "1s 1"],
+    "dance": ["song.wav"],
+    "act": ["walks"],
+    "inbetween": ["my_walk.bvh"],
+    "reconstruct": ["my_walk.bvh", "--missing", "LeftHand"],
+    "edit": ["my_walk.bvh", "walks while clapping"],
+    "info": ["my_walk.bvh"],
+    "convert": ["my_walk.bvh"],
+    "play": ["my_walk.bvh", "--no-open"],
+}
+WRITING = sorted(VERBS.keys() - {"info"})
+
+
+def writing(verb: str, out: str) -> list[str]:
+    """A command that works, if it may write there."""
+    return [verb, *VERBS[verb], *([] if verb == "convert" else ["--out"]), out]
+
+
+def options_of(verb: str) -> list:
+    (verbs,) = [
+        action
+        for action in command.parser_of(command.imported()[0])._actions
+        if isinstance(action.choices, dict)
+    ]
+    return verbs.choices[verb]._actions
+
+
+NUMBERS = [
+    (verb, action.option_strings[0])
+    for verb in VERBS
+    for action in options_of(verb)
+    if action.type in (int, float)
+]
+
+
+@pytest.fixture
+def no_work(folder, monkeypatch):
+    """The folder, where a motion that is read, or weights that are loaded, fail the test."""
+
+    def work(*_, **__):
+        pytest.fail("it works before everything is checked", pytrace=False)
+
+    # md first: it keeps the function that it finds in by_name
+    for module, name in ((md, "load"), (by_name, "load"), (outputs, "read")):
+        monkeypatch.setattr(module, name, work)
+    monkeypatch.setattr(checkpoints, "pretrained", work)
+    return folder
+
+
+def refused(words: list[str], folder: Path, capsys) -> str:
+    """The only line that a command says when it is refused; no file is written."""
+    before = sorted(folder.rglob("*"))
+    assert run(*words) == 1
+    said = capsys.readouterr()
+    (only,) = said.err.splitlines()
+    assert only.startswith(f"{words[0]}: ") and not said.out
+    assert sorted(folder.rglob("*")) == before
+    return only
+
+
+def test_every_verb_is_tried():
+    assert list(VERBS) == list(_commands.VERBS)
+    assert {("act", "--seconds"), ("convert", "--file-fps"), ("walk", "--seed")} <= set(NUMBERS)
+
+
+@pytest.mark.parametrize("value", ["-3", "1e300"])
+@pytest.mark.parametrize("verb, option", NUMBERS)
+def test_a_number_out_of_range_is_refused_before_any_work(verb, option, value, no_work, capsys):
+    (kind,) = [action.type for action in options_of(verb) if option in action.option_strings]
+    value = "9" * 30 if (kind, value) == (int, "1e300") else value
+    if option == "--every" and value != "-3":
+        pytest.skip("a keyframe every so many frames is the first and the last one")
+    ext = ".html" if verb == "play" else ".npz"
+    told = refused([*writing(verb, f"x{ext}"), option, value], no_work, capsys)
+    assert option.strip("-").split("-")[-1] in told
+
+
+PLACES = {
+    "no ending": ("out", "the name has no ending|must end in .html"),
+    "an unknown ending": ("out.docx", "unknown ending .docx|must end in .html"),
+    "a folder": ("folder.html", "folder.html is a folder"),
+    "a file as folder": ("my_walk.bvh/out.html", "my_walk.bvh is a file, not a folder"),
+    "a name too long": ("x" * 300 + ".html", "name too long"),
+    "there already": ("there.html", "exists already: choose another name, or add --overwrite"),
+    "a folder that takes no file": ("/proc/new/out.html", "no file can be made in /proc"),
+}
+
+
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("verb", WRITING)
+def test_a_place_that_cannot_be_written_is_refused_before_any_work(verb, place, no_work, capsys):
+    out, told = PLACES[place]
+    if out.startswith("/proc") and not Path("/proc").is_dir():
+        pytest.skip("this system has no such folder")
+    (no_work / "folder.html").mkdir()
+    (no_work / "there.html").touch()
+    assert re.search(told, refused(writing(verb, out), no_work, capsys), re.I)
+
+
 @pytest.mark.parametrize(
-    "words",
+    "words, told",
     [
-        ["dance", "nope.ogg"],
-        ["dance", "song.wav", "--seconds", "-3"],
-        ["inbetween", "my_walk.bvh", "--every", "0"],
+        (["dance", "nope.ogg", "--out", "x.bvh"], "there is no file nope.ogg"),
+        (["play", "my_walk.bvh", "nope.bvh"], "there is no file nope.bvh"),
+        (["act", "walks", "--seconds", "1", "--out", "x.bvh"], "seconds must be from 2 to 10"),
+        (["walk", "my_walk.bvh", "--control", "1s", "--out", "x.bvh"], "speed .* is missing"),
+        ([*writing("edit", "x.bvh"), "--keep", "tail"], "no part is called 'tail'"),
+        (["reconstruct", "my_walk.bvh", "--missing", "Tail", "--out", "x.bvh"], "called 'Tail'"),
+        ([*writing("reconstruct", "x.bvh"), "--frames", "9-3"], "9 comes after 3"),
+        ([*writing("convert", "x.bvh"), "--joints", "LeftArm"], "write JOINT=NAME"),
     ],
 )
-def test_no_work_is_announced_before_its_arguments_are_checked(words, folder, capsys):
-    assert run(*words, "--out", "x.bvh") == 1
-    (only,) = capsys.readouterr().err.splitlines()
-    assert only.startswith(f"{words[0]}: ")
+def test_other_arguments_are_checked_before_any_work(words, told, no_work, capsys):
+    assert run(*words) == 1
+    assert re.search(told, capsys.readouterr().err)
 
 
 def test_missing_joints_are_separated_by_commas_or_spaces(folder):
@@ -316,18 +423,8 @@ def test_an_error_of_the_projects_own_is_a_message(capsys):
     assert capsys.readouterr().err == "walk: the walk has no feet\n"
 
 
-def test_a_folder_that_cannot_be_written_is_told_before_the_work(folder, capsys, monkeypatch):
-    monkeypatch.setattr(outputs.os, "access", lambda *_: False)
-    assert run(*WALK[:-1], "locked/more.bvh") == 1
-    assert "you may not write in" in capsys.readouterr().err
-    monkeypatch.undo()
-    assert run(*WALK[:-1], str(folder / "my_walk.bvh/more.bvh")) == 1
-    said = capsys.readouterr().err
-    assert "my_walk.bvh is a file, not a folder" in said and "reading" not in said
-
-
 def test_a_drive_that_does_not_exist_is_told(folder, capsys, monkeypatch):
-    monkeypatch.setattr(outputs.Path, "exists", lambda path: path == Path("my_walk.bvh"))
+    monkeypatch.setattr(_files.Path, "exists", lambda path: path == Path("my_walk.bvh"))
     assert run(*WALK[:-1], "elsewhere/more.bvh") == 1
     assert f"there is no {folder.anchor}; choose another place" in capsys.readouterr().err
 
@@ -467,7 +564,7 @@ def interrupted(words: list[str], folder: Path, seen: str) -> tuple[int, str]:
         process.send_signal(signal.SIGINT)
         while True:
             said += os.read(terminal, 1000)
-    process.communicate(timeout=60)
+    process.communicate(timeout=PATIENCE / 1000)
     os.close(terminal)
     return process.returncode, said.decode()
 

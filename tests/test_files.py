@@ -1,15 +1,18 @@
 """The files themselves: read in one sitting, tied to no machine, one statement a line."""
 
 import ast
+import os
 import re
 import subprocess
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import notebook_cells
 import pytest
 
-from motiondiff_edu._files import replacing
+from motiondiff_edu import _files
+from motiondiff_edu._files import check_writable, replacing
 
 ROOT = Path(__file__).parent.parent
 
@@ -151,6 +154,49 @@ def test_a_message_names_the_file_that_was_asked_for(tmp_path):
         raise OSError(28, "no room", str(aside))
     with pytest.raises(OSError, match="no room: 'another'"), replacing(path):
         raise OSError(28, "no room", "another")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="there no process is asked whether it runs")
+def test_what_a_killed_write_left_is_removed_by_the_next(tmp_path):
+    """Not what a running process writes, or what belongs to another file or another machine."""
+    script = (
+        "import sys, time\nfrom motiondiff_edu._files import check_writable, replacing\n"
+        "with replacing(sys.argv[1]) as aside:\n"
+        "    aside.write_text('half'); print(aside.name, flush=True); time.sleep(600)\n"
+    )
+    path, other = tmp_path / "a [walk].bvh", tmp_path / "b [walk].bvh"
+    command = [sys.executable, "-c", script]
+    writers = [
+        subprocess.Popen([*command, str(one)], stdout=subprocess.PIPE, text=True)
+        for one in (path, path, other)
+    ]
+    try:
+        killed, running, of_another = (writer.stdout.readline().strip() for writer in writers)
+        for writer in (writers[0], writers[2]):
+            writer.kill()
+            writer.wait()
+        elsewhere = killed.replace(f".{_files._machine()}.", ".zzzz.")
+        (tmp_path / elsewhere).write_text("of another machine")
+        left = {killed, running, of_another, elsewhere}
+        assert {one.name for one in tmp_path.iterdir()} == left
+        with replacing(path) as aside:
+            aside.write_text("whole")
+        left = {running, of_another, elsewhere, path.name}
+        assert {one.name for one in tmp_path.iterdir()} == left
+    finally:
+        for writer in writers:
+            writer.kill()
+            writer.wait()
+
+
+def test_a_place_is_tried_and_left_as_it_was(tmp_path):
+    check_writable(tmp_path / "new" / "folder" / "walk.bvh")
+    assert not any(tmp_path.iterdir())
+    (tmp_path / "file").touch()
+    with pytest.raises(OSError, match="file is a file, not a folder; choose another place"):
+        check_writable(tmp_path / "file" / "walk.bvh")
+    with pytest.raises(OSError, match="name too long.; choose another place"):
+        check_writable(tmp_path / ("x" * 300 + ".bvh"))
 
 
 @pytest.mark.parametrize(

@@ -96,7 +96,7 @@ def test_a_motion_at_another_rate_is_continued(walked):
 
 def test_a_song_is_danced_to(folder):
     sound = compose(3, "latin", seconds=6).audio
-    song = md.load("dancer").dance(sound, seconds=2, seed=0)
+    song = md.load("dancer").dance(sound, sample_rate=16_000, seconds=2, seed=0)
     song.save("song.npz")
     assert len(song) == 40 and len(song.audio) == 32_000
     back = md.read_motion("song.npz")
@@ -207,7 +207,7 @@ def test_a_motion_shows_itself_as_a_player(walked):
 
 
 def test_play_shows_several_side_by_side(walked, tmp_path, capsys):
-    song = md.Motion(walked.positions[:40], audio=np.zeros(16_000, np.float32))
+    song = md.Motion(walked.positions[:40], audio=np.zeros(16_000, np.float32), sample_rate=16_000)
     page = md.play(walked, [song, walked[:10]], path=tmp_path / "p.html", open_page=False)
     assert page == (tmp_path / "p.html").resolve() and str(page) in capsys.readouterr().out
     assert "<!doctype html>" in page.read_text("utf-8")
@@ -268,7 +268,9 @@ def test_in_betweens_that_jump_are_made_again_without_guidance(better, said, wal
     "make",
     [
         lambda motion, n: md.load("walker").walk(motion, CONTROL, samples=n, progress=False),
-        lambda motion, n: md.load("dancer").dance(SOUND, samples=n, steps=3, progress=False),
+        lambda motion, n: md.load("dancer").dance(
+            SOUND, samples=n, sample_rate=16_000, steps=3, progress=False
+        ),
         lambda motion, n: md.inbetween(
             motion, md.keyframes(motion), samples=n, steps=3, progress=False
         ),
@@ -282,6 +284,22 @@ def test_the_first_of_several_samples_is_the_sample_alone(make, walked):
     alone, (first, second) = make(walked, 1), make(walked, 2)
     assert np.abs(first.positions - alone.positions).max() < 1e-4
     assert np.abs(second.positions - alone.positions).max() > 1e-2
+
+
+@pytest.mark.parametrize(
+    "make, told",
+    [
+        (lambda w: md.inbetween(w, md.keyframes(w), seed=-1), "seed must be"),
+        (lambda w: md.inbetween(w, md.keyframes(w), samples=0), "samples must be"),
+        (lambda w: md.reconstruct(w, w.all_but("Head"), seed=-1), "seed must be"),
+        (lambda w: md.edit(w, "waves", seed=-1), "seed must be"),
+        (lambda w: md.edit(w, "waves", strength=2), "strength must be"),
+    ],
+)
+def test_numbers_are_checked_before_weights_are_loaded(make, told, walked, monkeypatch):
+    monkeypatch.setattr(shipped, "_shipped", lambda name: pytest.fail(f"{name} was loaded"))
+    with pytest.raises(ValueError, match=told):
+        make(walked)
 
 
 def test_a_figure_that_lies_is_not_continued(walked):
@@ -352,7 +370,7 @@ def test_a_jump_from_one_part_to_the_next_is_told(walked):
 def test_another_song_gets_another_dance_although_the_seed_is_the_same():
     """About as different as with another seed; with the same noise it was half of that."""
     songs = [compose(k, genre, seconds=5.0).audio for k, genre in enumerate(("house", "latin"))]
-    options = {"steps": 10, "progress": False}
+    options = {"sample_rate": 16_000, "steps": 10, "progress": False}
     ours = [md.load("dancer").dance(songs[0], seed=seed, **options).positions for seed in range(4)]
     others = [md.load("dancer").dance(songs[1], seed=seed, **options).positions for seed in (0, 1)]
 
@@ -421,7 +439,7 @@ def test_play_in_a_notebook_displays_a_player(walked, monkeypatch):
 
 @pytest.mark.parametrize("ending, begins", [("gif", b"GIF89a"), ("html", b"<!doc"), ("mp4", None)])
 def test_films_and_pages_are_written_whole(ending, begins, walked, tmp_path):
-    short = md.Motion(walked.positions[:6], audio=np.zeros(4_800, np.float32))
+    short = md.Motion(walked.positions[:6], audio=np.zeros(4_800, np.float32), sample_rate=16_000)
     path = short.save(tmp_path / f"walk.{ending}")
     head = path.read_bytes()[:12]
     assert head.startswith(begins) if begins else b"ftyp" in head
@@ -498,11 +516,16 @@ TOLD = {
     "walker().walk(w, ahead, samples=0)": "samples must be a whole number of at least 1, not 0",
     'dancer().dance("nope.ogg")': "AudioError: nope.ogg does not exist; check the spelling",
     "dancer().dance(np.zeros(32000), seconds=-3)": "seconds must be above 0",
-    "dancer().dance(np.zeros(32000))": "the samples are silent from start to end",
-    "dancer().dance((np.ones(32000) * 9999).astype(np.int16))": "not int16; divide 16-bit",
-    "dancer().dance(np.full(32000, np.nan))": "32000 samples are NaN or infinite, the first at 0",
-    "dancer().dance(np.r_[np.zeros(99), 1e34])": "the one at 0.006 s is 1e+34",
-    "dancer().dance(w)": "sound must be a file's name or samples, not Motion",
+    "dancer().dance(np.ones(32000))": "samples do not say how fast they are played: pass",
+    "dancer().dance([0.1] * 32000)": "samples do not say how fast they are played: pass",
+    "dancer().dance(np.ones(9), sample_rate='9')": "from 1000 to 768000 Hz, not '9'",
+    "dancer().dance(__import__('io').StringIO())": 'open it with open(path, "rb")',
+    "dancer().dance(np.zeros(32000), sample_rate=16000)": "the samples are silent from start",
+    "dancer().dance(np.ones(32000, np.int16), sample_rate=9999)": "not int16; divide 16-bit",
+    "dancer().dance(np.full(32000, np.nan), sample_rate=16000)": "32000 samples are NaN",
+    "dancer().dance(np.r_[np.zeros(99), 1e34], sample_rate=16000)": "the one at 0.006 s is 1e+34",
+    "dancer().dance(w)": "sound must be the name of a file, its bytes, or samples with their "
+    "sample_rate, not Motion",
     "md.keyframes(w, every=0)": "every must be a whole number of at least 1, not 0",
     "md.inbetween(w, known[:3])": "known is bool (3, 21); it must be bool (30, 21)",
     "md.inbetween(w, known[..., None])": "known is bool (30, 21, 1); it must be bool (30, 21)",
@@ -529,7 +552,8 @@ TOLD = {
     "md.joystick([(1e9, 1, 0, 0)])": "the segments last 1e+09 s; 3600 s is the most",
     'w.between("a", 1)': "times are numbers of seconds, not 'a' and 1",
     "w.all_but('Head', 3.5, 9)": "frames are whole numbers, not 3.5 and 9",
-    "md.Motion(w.positions, audio='abc')": "audio must be numbers (N,)",
+    "md.Motion(w.positions, audio=np.zeros(9))": "audio needs its sample_rate in Hz",
+    "md.Motion(w.positions, audio='abc', sample_rate=9)": "audio must be numbers (N,)",
     "md.Motion(w.positions, root='abc')": "root must be numbers (30, 3)",
     "md.Motion(w.positions, sample_rate=2.7)": "sample_rate must be a whole number of hertz, not",
     "md.joystick([('3', 1.2, 0, 0)])": "turning), not ('3', 1.2, 0, 0)",

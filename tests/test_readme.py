@@ -8,6 +8,7 @@ import pytest
 import soundfile
 from PIL import Image
 
+import motiondiff_edu as md
 from data_synth.music import compose
 from data_synth.walking import walk
 from motiondiff_edu.__main__ import VERBS, main
@@ -40,15 +41,27 @@ def folder(tmp_path, monkeypatch):
     given = walk(constant_control(1.0, seconds=WALKED), seed=5).world()
     write_bvh(tmp_path / "my_walk.bvh", given)
     soundfile.write(tmp_path / "song.ogg", compose(3, "pop", seconds=SUNG).audio, 16_000)
+    (tmp_path / "my_walks").mkdir()
+    write_bvh(tmp_path / "my_walks" / "one.bvh", given)
+    (tmp_path / "my_dances").mkdir()
+    write_bvh(tmp_path / "my_dances" / "one.bvh", np.concatenate([given] * 3))  # 6 s
+    soundfile.write(
+        tmp_path / "my_dances" / "one.wav", compose(4, "pop", seconds=6.0).audio, 16_000
+    )
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
 
 def run(root, page: str) -> dict:
-    """Run the Python examples of a page one after the other; what they have named."""
+    """Run the Python examples of a page one after the other; what they have named.
+
+    A training of 20,000 steps has two here, of small batches.
+    """
     names: dict = {}
     for code in blocks(root, page, "python"):
         if "bpy" not in code and "io_anim_bvh" not in code:  # those are for Blender's own Python
+            code = code.replace("20_000", "2").replace("draw(64,", "draw(3,")
+            code = code.replace("draw(32,", "draw(3,")
             exec(compile(code, page, "exec"), names)
     return names
 
@@ -79,6 +92,19 @@ def test_the_examples_of_the_guide_run_in_order(root, folder):
     assert (folder / "whole.bvh").exists()
     assert len(made["motions"]) == 4 and (folder / "act.html").exists()
     assert len(made["clapping"]) == len(made["walk"])
+
+
+def test_the_lines_for_training_write_a_walker_and_a_dancer_that_perform(root, folder):
+    made = run(root, "docs/USING.md")
+    assert made["step"].step == 2
+    walker, dancer = (md.load(f"my_{name}.safetensors") for name in ("walker", "dancer"))
+    more = walker.walk(made["walk"], md.joystick([(0.5, 1, 0, 0)]), progress=False)
+    assert len(more) == 10
+    assert len(dancer.dance("song.ogg", steps=2, progress=False)) == SUNG * 20
+    # the same lines in both pages, each copied as it stands
+    (ours,) = (code for code in blocks(root, "README.md", "python") if "train_steps(" in code)
+    assert ours in blocks(root, "docs/USING.md", "python")
+    assert "my_walker" in ours and (folder / "my_walker.json").is_file()
 
 
 def test_the_example_for_blender_writes_its_file(root, folder):

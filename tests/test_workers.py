@@ -9,6 +9,7 @@ import subprocess
 import sys
 
 import pytest
+from browser import PATIENCE
 
 DIES = """
 import os, signal
@@ -41,8 +42,10 @@ def run(root, tmp_path):
             "--dist",
             "loadfile",
         ]
+        command.append(str(tmp_path))
+        patience = PATIENCE / 1000
         return subprocess.run(
-            [*command, str(tmp_path)], cwd=tmp_path, capture_output=True, text=True, timeout=100
+            command, cwd=tmp_path, capture_output=True, text=True, timeout=patience
         )
 
     return run

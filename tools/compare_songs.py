@@ -63,7 +63,7 @@ def temporal(y: Float[np.ndarray, "N"]) -> dict[str, float]:
 
 def of_mel(y: Float[np.ndarray, "N"]) -> dict[str, float]:
     """Means and standard deviations of the log-Mel in four ranges of bands."""
-    mel = log_mel(torch.from_numpy(y)).numpy()
+    mel = log_mel(torch.from_numpy(y), SAMPLE_RATE).numpy()
     found = {}
     for bands in MEL_RANGES:
         name = f"Mel {bands.start}-{bands.stop - 1}"
@@ -109,7 +109,7 @@ def main() -> None:
         print(f"{name:24s}", " | ".join(f"{kind} {spread(rows[kind], name)}" for kind in rows))
     followed = []
     for song in heard:
-        found = beats_of(song.audio)
+        found = beats_of(song.audio, song.sample_rate)
         score = f_measure(found, song.beats)
         ratio = np.median(np.diff(found)) * song.tempo / 60 if len(found) > 2 else np.nan
         followed.append(score)

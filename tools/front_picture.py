@@ -96,10 +96,12 @@ def dance_panel(browser, folder: Path) -> Iterator[Image.Image]:
     """The shipped dancer and the song it dances to, with its beats."""
     seconds = PICTURES / FPS
     song = compose(2_025, "house", seconds=seconds)
-    dance = md.load("dancer").dance(song.audio, seed=3)
+    dance = md.load("dancer").dance(song.audio, sample_rate=song.sample_rate, seed=3)
     beats = song.beats[song.beats < dance.seconds]
     player = Player(
-        dance.positions, audio=Soundtrack(dance.audio, beats), look=Look(autoplay=False)
+        dance.positions,
+        audio=Soundtrack(dance.audio, beats, sample_rate=dance.sample_rate),
+        look=Look(autoplay=False),
     )
     yield from played(browser, folder, player, WIDTHS[1])
 

@@ -52,6 +52,11 @@ class Song:
     info: dict = field(default_factory=dict)
 
     @property
+    def sample_rate(self) -> int:
+        """Samples a second of the sound: SAMPLE_RATE."""
+        return SAMPLE_RATE
+
+    @property
     def seconds(self) -> float:
         """Length of the sound."""
         return len(self.audio) / SAMPLE_RATE

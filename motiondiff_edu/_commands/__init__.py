@@ -10,6 +10,8 @@ import traceback
 import warnings
 from types import ModuleType
 
+from . import outputs
+
 VERBS = ("walk", "dance", "act", "inbetween", "reconstruct", "edit", "info", "convert", "play")
 OURS = __name__.split(".")[0]
 STOPPED = 130  # the exit code of a command that Ctrl-C ended
@@ -25,6 +27,7 @@ def run(module: ModuleType, args: argparse.Namespace) -> int:
         with warnings.catch_warnings():
             warnings.simplefilter("default", UserWarning)
             warnings.showwarning = _as_a_note
+            outputs.check_arguments(args)
             module.run(args)
     except KeyboardInterrupt:
         print("\nstopped; no incomplete file is left", file=sys.stderr)

@@ -34,6 +34,9 @@ def run(args: argparse.Namespace) -> None:
     """Make the motions, and write them."""
     paths = outputs.output_paths(args.out, args.overwrite, args.samples)
     from .. import load
+    from ..performers.mover import checked_length
+
+    checked_length(args.seconds)
 
     how = {"seconds": args.seconds, "guidance": args.guidance}
     made = load("mover").act(args.text, samples=args.samples, seed=args.seed, **how)

@@ -5,7 +5,7 @@ cannot."""
 import argparse
 from pathlib import Path
 
-from ..motion.checks import check_there, checked_guidance, checked_seconds
+from ..motion.checks import check_there
 from . import outputs
 
 HELP = "dance to a song"
@@ -35,10 +35,6 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> None:
     """Make the dances, and write them."""
     paths = outputs.output_paths(args.out, args.overwrite, args.samples)
-    if args.seconds is not None:
-        checked_seconds(args.seconds)
-    if args.guidance is not None:
-        checked_guidance(args.guidance)
     check_there(args.song)
     outputs.say(f"dancing to {args.song}")
     from .. import load

@@ -37,10 +37,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> None:
     """Edit the motion, and write the results."""
     paths = outputs.output_paths(args.out, args.overwrite, args.samples, args.file)
-    motion = outputs.read(args.file)
     from .. import edit
-    from ..editing.masks import body_part
+    from ..editing.masks import body_part, checked_part
 
-    known = body_part(len(motion), args.keep.lower().replace("-", " ")) if args.keep else None
+    part = checked_part(args.keep.lower().replace("-", " ")) if args.keep else None
+    motion = outputs.read(args.file)
+    known = body_part(len(motion), part) if part else None
     how = {"strength": args.strength, "samples": args.samples, "seed": args.seed}
     outputs.write_all(edit(motion, args.text, known, **how), paths)

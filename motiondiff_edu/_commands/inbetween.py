@@ -4,7 +4,6 @@ and the last frame are keyframes too."""
 import argparse
 from pathlib import Path
 
-from ..motion.checks import checked_count
 from . import outputs
 
 HELP = "keep keyframes and generate the frames between them"
@@ -28,10 +27,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> None:
     """Fill in between the keyframes, and write the results."""
     paths = outputs.output_paths(args.out, args.overwrite, args.samples, args.file)
-    every = checked_count(args.every, "--every")
     motion = outputs.read(args.file)
     from .. import inbetween, keyframes
 
     outputs.say("generating the frames between the keyframes")
-    known = keyframes(motion, every=every)
+    known = keyframes(motion, every=args.every)
     outputs.write_all(inbetween(motion, known, samples=args.samples, seed=args.seed), paths)

@@ -1,13 +1,37 @@
-"""The files that a command reads and writes; it checks output names before it computes anything."""
+"""What every command asks before it computes anything: numbers in range, names it can write.
+
+A new option with a number needs a line in CHECKS.
+"""
 
 import argparse
-import os
 import sys
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
+from .._files import check_writable
 from ..motion import registry
-from ..motion.checks import check_there, checked_samples
+from ..motion.checks import (
+    check_there,
+    checked_count,
+    checked_guidance,
+    checked_rate,
+    checked_samples,
+    checked_seconds,
+    checked_seed,
+    checked_strength,
+)
+
+# an option of any verb, as it is called in Python -> its check
+CHECKS = {
+    "every": partial(checked_count, name="--every"),
+    "file_fps": partial(checked_rate, name="--file-fps"),
+    "guidance": checked_guidance,
+    "samples": partial(checked_samples, name="--samples"),
+    "seconds": checked_seconds,
+    "seed": checked_seed,
+    "strength": checked_strength,
+}
 
 
 def endings() -> str:
@@ -56,15 +80,13 @@ def output_paths(
 ) -> list[Path]:
     """The files to write: `out`, or made-1.bvh, made-2.bvh ... for several samples.
 
-    Raises ValueError for an unknown ending, a folder, a file that exists, for the file that is read
-    (`source`), also with --overwrite, and for a folder that cannot be made or written to.
+    Raises ValueError for an unknown ending, a folder, a file that exists, and for the file that is
+    read (`source`), also with --overwrite; OSError for a place where no file can be made.
     """
-    checked_samples(samples, "--samples")
     if out.suffix.lower() not in registry.writers.names():
         what = f"unknown ending {out.suffix}" if out.suffix else "the name has no ending"
         raise ValueError(f"{out}: {what}; use one of {endings()}")
     out = out.expanduser()
-    _check_folder(out)
     digits = len(str(samples))
     numbers = [""] if samples == 1 else [f"-{k:0{digits}d}" for k in range(1, samples + 1)]
     paths = [out.with_name(f"{out.stem}{number}{out.suffix}") for number in numbers]
@@ -78,19 +100,16 @@ def output_paths(
             )
         if path.exists() and not overwrite:
             raise ValueError(f"{path} exists already: choose another name, or add --overwrite")
+        check_writable(path)
     return paths
 
 
-def _check_folder(out: Path) -> None:
-    """Raise ValueError unless the file's folder is there, or can be made, and can be written to."""
-    above = out.absolute().parents
-    there = next((folder for folder in above if folder.exists()), None)
-    if there is None:  # a drive of Windows that is not there
-        raise ValueError(f"{out}: there is no {above[-1]}; choose another place")
-    if not there.is_dir():
-        raise ValueError(f"{out}: {there} is a file, not a folder; choose another place")
-    if not os.access(there, os.W_OK | os.X_OK):
-        raise ValueError(f"{out}: you may not write in {there}; choose another place")
+def check_arguments(args: argparse.Namespace) -> None:
+    """Raise ValueError for a number of any verb that is out of range, before anything is read."""
+    for name, check in CHECKS.items():
+        value = getattr(args, name, None)
+        if value is not None:
+            check(value)
 
 
 def read(path: Path, mapping: dict[str, str] | None = None, file_fps: float | None = None):

@@ -4,6 +4,7 @@ file."""
 import argparse
 from pathlib import Path
 
+from ..motion.checks import check_there
 from . import outputs
 
 HELP = "show motions in the browser"
@@ -24,6 +25,8 @@ def run(args: argparse.Namespace) -> None:
         if args.out.suffix.lower() != ".html":
             raise ValueError(f"--out {args.out}: the page's name must end in .html")
         (args.out,) = outputs.output_paths(args.out, args.overwrite)
+    for path in args.file:
+        check_there(path)
     motions = [outputs.read(path) for path in args.file]
     from .. import play
 

@@ -39,15 +39,19 @@ def run(args: argparse.Namespace) -> None:
     frames = spans(args.frames)
     if args.frames and not args.missing:
         raise ValueError("--frames needs --missing, which names the joints")
+    joints = [name for name in re.split(r"[,\s]+", " ".join(args.missing or [])) if name]
+    if args.missing and not joints:
+        raise ValueError("--missing names no joint")
+    from ..motion.skeleton import COURSE
+
+    for name in joints:
+        COURSE.index(name)  # an unknown one is told before anything is read
     paths = outputs.output_paths(args.out, args.overwrite, args.samples, args.file)
     motion = outputs.read(args.file)
     from .. import reconstruct
 
     known = motion.known
-    for first, last in frames if args.missing else []:
-        joints = [name for name in re.split(r"[,\s]+", " ".join(args.missing)) if name]
-        if not joints:
-            raise ValueError("--missing names no joint")
+    for first, last in frames if joints else []:
         known &= motion.all_but(joints, first, last)
     if known.all():
         raise ValueError(f"{args.file} lacks no joint: name some, such as --missing LeftHand")

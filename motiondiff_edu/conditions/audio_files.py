@@ -12,6 +12,7 @@ from contextlib import suppress
 from pathlib import Path
 from shlex import quote
 from tempfile import TemporaryDirectory
+from typing import BinaryIO
 
 import numpy as np
 import soxr
@@ -19,8 +20,10 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
+from ..motion.checks import is_number
 from .music import SAMPLE_RATE
 
+RATES = (1_000, 768_000)  # Hz: a sample rate in kHz is outside
 SHORTEST = 1.0  # seconds
 MOST = 3600.0  # seconds that are read; a damaged header may promise years
 PADDING = 0.1  # seconds at the end of an MP3 that its encoder added and the reader leaves out
@@ -87,34 +90,55 @@ def read_audio(path: str | Path) -> Float[Tensor, "N"]:
     return torch.from_numpy(resample(mono, rate).astype(np.float32))
 
 
-def read_sound(sound: str | Path | bytes | memoryview) -> Float[Tensor, "N"]:
-    """`read_audio` of a sound file's name, or of its bytes, for example from an upload.
+def samples_of(
+    sound: str | Path | bytes | bytearray | memoryview | BinaryIO | np.ndarray | Tensor,
+    sample_rate: float | None = None,
+) -> Float[Tensor, "N"]:
+    """Sound as mono float32 samples at 16 kHz, without a file's constant offset.
 
-    Raises AudioError as `read_audio` does.  Notebook: 12
+    `sound` is the name of a sound file, its bytes (from an upload, for example), a file that is
+    open for reading bytes, or mono samples (N,) from -1 to 1 with their `sample_rate` in Hz.
+    Raises AudioError as `read_audio` does, for samples without their rate and a file with one, and
+    for samples that have another shape, are whole numbers, are not finite, are silent, or lie far
+    outside -1 to 1.  Notebook: 12
     """
-    if isinstance(sound, str | Path):
+    if isinstance(sound, Tensor):
+        sound = sound.detach().cpu().numpy()
+    if isinstance(sound, (np.ndarray, list)):
+        return _checked_samples(np.asarray(sound), sample_rate)
+    if sample_rate is not None:
+        raise AudioError("a sound file has its own sample rate: leave sample_rate out")
+    if isinstance(sound, (str, Path)):
         return read_audio(sound)
+    content = sound.read() if hasattr(sound, "read") else sound
+    if isinstance(content, str):
+        raise AudioError('the file is open for reading text; open it with open(path, "rb")')
+    if not isinstance(content, (bytes, bytearray, memoryview)):
+        raise AudioError(
+            "sound must be the name of a file, its bytes, or samples with their sample_rate, not "
+            f"{type(sound).__name__}"
+        )
     with TemporaryDirectory() as folder:
-        path = Path(folder) / "the uploaded file"
-        path.write_bytes(sound)
+        path = Path(folder) / "the given file"
+        path.write_bytes(content)
         return read_audio(path)
 
 
-def samples_of(sound: str | Path | np.ndarray | Tensor) -> Float[Tensor, "N"]:
-    """The samples of a sound file, or given samples after a check: mono, 16 kHz, float32.
-
-    Raises AudioError as `read_audio` does, and for samples that have another shape, are whole
-    numbers, are not finite, are silent, or lie far outside -1 to 1.
-    """
-    if isinstance(sound, (str, Path)):
-        return read_audio(sound)
-    if not isinstance(sound, (np.ndarray, Tensor, list)):
-        raise AudioError(f"sound must be a file's name or samples, not {type(sound).__name__}")
-    samples = np.asarray(sound)
+def _checked_samples(samples: np.ndarray, sample_rate: float | None) -> Float[Tensor, "N"]:
+    """Samples at 16 kHz, of samples at another rate.  Raises AudioError as `samples_of` does."""
+    if sample_rate is None:
+        raise AudioError(
+            "samples do not say how fast they are played: pass sample_rate, in Hz. "
+            "librosa.load returns it beside the samples"
+        )
+    if not is_number(sample_rate) or not RATES[0] <= sample_rate <= RATES[1]:
+        raise AudioError(
+            f"sample_rate must be from {RATES[0]} to {RATES[1]} Hz, not {sample_rate!r:.40}"
+        )
     if samples.ndim != 1 or not len(samples):
         raise AudioError(
-            f"sound must be one channel of samples (N,) at {SAMPLE_RATE} Hz, not {samples.shape}; "
-            "average the channels first"
+            f"sound must be one channel of samples (N,), not {samples.shape}; average the "
+            "channels first"
         )
     if not np.issubdtype(samples.dtype, np.floating):
         raise AudioError(
@@ -124,18 +148,18 @@ def samples_of(sound: str | Path | np.ndarray | Tensor) -> Float[Tensor, "N"]:
     bad = np.flatnonzero(~np.isfinite(samples))
     if len(bad):
         raise AudioError(
-            f"{len(bad)} samples are NaN or infinite, the first at {bad[0] / SAMPLE_RATE:.3f} s"
+            f"{len(bad)} samples are NaN or infinite, the first at {bad[0] / sample_rate:.3f} s"
         )
     if np.abs(samples).max() < SILENT:
         raise AudioError(
             "the samples are silent from start to end, so there is nothing to dance to"
         )
-    if loud := _too_loud(samples, SAMPLE_RATE):
+    if loud := _too_loud(samples, sample_rate):
         raise AudioError(f"{loud}. Divide the sound by its largest absolute sample")
-    return torch.from_numpy(samples.astype(np.float32))
+    return torch.from_numpy(resample(samples.astype(np.float32), sample_rate))
 
 
-def _too_loud(samples: Float[np.ndarray, "N"], rate: int) -> str:
+def _too_loud(samples: Float[np.ndarray, "N"], rate: float) -> str:
     """What says that samples have another unit, or "" for those that have not."""
     where = int(np.abs(samples).argmax())
     if abs(samples[where]) <= LOUDEST:
@@ -146,7 +170,7 @@ def _too_loud(samples: Float[np.ndarray, "N"], rate: int) -> str:
     )
 
 
-def resample(audio: Float[np.ndarray, "N"], rate: int) -> Float[np.ndarray, "n"]:
+def resample(audio: Float[np.ndarray, "N"], rate: float) -> Float[np.ndarray, "n"]:
     """The same sound at 16 kHz, resampled by soxr at very high quality, without aliasing."""
     return audio if rate == SAMPLE_RATE else soxr.resample(audio, rate, SAMPLE_RATE, "VHQ")
 

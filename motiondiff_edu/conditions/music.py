@@ -106,17 +106,18 @@ def _tools(device: torch.device, dtype: torch.dtype) -> tuple[Tensor, Tensor]:
     return window, mel_filters().T.contiguous().to(device, dtype)
 
 
-def log_mel(audio: Samples) -> Float[Tensor, "*B M 80"]:
-    """The log-Mel spectrogram of sound at 16 kHz: M = 1 + N // 512 frames.
+def log_mel(audio: Samples, sample_rate: int) -> Float[Tensor, "*B M 80"]:
+    """The log-Mel spectrogram of sound at 16 kHz, the rate of the paper: M = 1 + N // 512 frames.
 
     Frame m is centred on sample 512 m.
 
     log(max(FLOOR, filters @ |STFT|^2)), with the natural logarithm, a Hann window of 1024 samples,
     and zeros beyond both ends. A full-scale sine gives 5 (high pitch) to 8 (low pitch), digital
     silence log(1e-5) = -11.5.
-    Raises ValueError for no samples, or whole numbers.
+    Raises ValueError for another rate, no samples, or whole numbers.
     Source: MoFusion 3.3.  Notebook: 11
     """
+    check_sample_rate(sample_rate)
     audio = torch.as_tensor(audio)
     if not audio.is_floating_point() or not audio.shape[-1]:
         raise ValueError(
@@ -133,6 +134,15 @@ def log_mel(audio: Samples) -> Float[Tensor, "*B M 80"]:
         ).mT
         bands.append((spectrum.real.square() + spectrum.imag.square()) @ filters)
     return torch.cat(bands, dim=1).clamp(min=FLOOR).log().reshape(*audio.shape[:-1], M, BANDS)
+
+
+def check_sample_rate(sample_rate: int) -> None:
+    """Raise ValueError unless samples are at 16 kHz, with what to do."""
+    if sample_rate != SAMPLE_RATE:
+        raise ValueError(
+            f"the sound is at {sample_rate!r:.40} Hz, and this needs {SAMPLE_RATE} Hz: "
+            "conditions.audio_files.samples_of(sound, sample_rate) resamples it"
+        )
 
 
 def frame_times(M: int) -> Float[Tensor, "M"]:
@@ -164,14 +174,16 @@ def crop_seconds(
 
 
 def beats_of(
-    audio: Float[Tensor, "N"] | Float[np.ndarray, "N"], lag: float = TRACKER_LAG
+    audio: Float[Tensor, "N"] | Float[np.ndarray, "N"], sample_rate: int, lag: float = TRACKER_LAG
 ) -> Float[np.ndarray, "K"]:
     """The beats of a recording at 16 kHz, in seconds, by librosa's tracker with its `lag` removed.
 
     The tracker assumes a steady tempo. It can follow every second beat, or half beats; in silence
     it finds none. A beat is the time at which something starts to sound.
+    Raises ValueError for another rate.
     Source: Ellis 2007, by librosa.  Notebook: 11
     """
+    check_sample_rate(sample_rate)
     # slow to import, and needed only for recordings: a composed song has its beats
     from .compiled import librosa
 

@@ -11,7 +11,7 @@ import tempfile
 from collections import Counter
 from pathlib import Path
 
-from .._files import replacing
+from .._files import check_writable, replacing
 from . import answers
 from .answers import OPEN, RIGHT, UNREADABLE, Answer
 from .places import notebook_folder
@@ -53,6 +53,8 @@ def run(chosen: argparse.Namespace) -> int:
         raise CollectError("collect needs a system with fork: Linux, macOS, or WSL on Windows")
     if chosen.seconds < 1 or chosen.gigabytes <= 0:
         raise CollectError("--seconds must be 1 or more, and --gigabytes above 0")
+    if chosen.out:
+        check_writable(chosen.out)
     copies = copies_of(chosen.folder, chosen.only)
     rows = []
     for number in sorted({number for _, number in copies}):

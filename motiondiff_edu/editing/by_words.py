@@ -20,7 +20,7 @@ from ..beyond.guidance import blended
 from ..ddpm import Generators, draw, final, q_sample, timesteps
 from ..inbetweening import inpaint_steps
 from ..metrics.actions import HANDS, actions
-from ..motion.checks import is_number
+from ..motion.checks import checked_strength
 from ..motion.dance_frame import Place
 from ..motion.moving_frame import D
 from ..motion.root_frame import estimate_root
@@ -125,8 +125,7 @@ def visited(S: int, steps: int, strength: float) -> list[int]:
 
     Raises ValueError for a strength that is not above 0 and at most 1.
     """
-    if not is_number(strength) or not 0 < strength <= 1:
-        raise ValueError(f"strength must be a number above 0 and at most 1, not {strength!r:.40}")
+    strength = checked_strength(strength)
     every = timesteps(S, min(steps, S))
     return [s for s in every if s <= round(strength * S)] or every[-1:]
 

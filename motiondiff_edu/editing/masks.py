@@ -126,9 +126,14 @@ def body_part(T: int, part: str) -> Bool[np.ndarray, "{T} J"]:
     "trajectory" is the pelvis alone.
     Raises KeyError for another name, with a list of the parts.  Notebook: 15
     """
+    return known_frames(T, range(T), PARTS[checked_part(part)])
+
+
+def checked_part(part: str) -> str:
+    """A name of PARTS.  Raises KeyError for another, with a list of the parts."""
     if part not in PARTS:
         raise KeyError(f"no part is called {part!r}; there are {', '.join(PARTS)}")
-    return known_frames(T, range(T), PARTS[part])
+    return part
 
 
 def known_columns(known: Bool[np.ndarray, "*B T J"]) -> Bool[np.ndarray, "*B T 63"]:

@@ -32,10 +32,12 @@ def bone_lengths(positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, 
 def bone_rmse(
     positions: Float[np.ndarray, "*B T J 3"], reference: Float[np.ndarray, "bones"] = BONE_LENGTHS
 ) -> float:
-    """The paper's bone-length error in cm, over all clips, frames and bones together.
+    """The bone-length error in cm, over all clips, frames and bones together.
 
     RMSE = 100 * sqrt( mean over clips, t, b of (l_b(t) - reference_b)^2 ), lengths in metres.
-    Constant errors and jitter both count. Source: MoDiff IV-B, Table I.  Notebook: 08
+    Constant errors and jitter both count. The paper says "RMSE (cm) of the bone length"; the
+    formula is ours.
+    Source: MoDiff IV-B, Table I.  Notebook: 08
     """
     return float(CM_PER_METRE * np.sqrt(np.mean((bone_lengths(positions) - reference) ** 2)))
 

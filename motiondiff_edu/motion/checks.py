@@ -60,6 +60,13 @@ def checked_guidance(guidance: float) -> float:
     return float(guidance)
 
 
+def checked_strength(strength: float) -> float:
+    """The strength of an edit, above 0 and up to 1.  Raises ValueError for anything else."""
+    if not is_number(strength) or not 0 < strength <= 1:
+        raise ValueError(f"strength must be a number above 0 and at most 1, not {strength!r:.40}")
+    return float(strength)
+
+
 def check_there(path: Path) -> None:
     """Raise FileNotFoundError if there is neither a file nor a folder of that name."""
     if not path.expanduser().is_file() and not path.expanduser().is_dir():

@@ -151,12 +151,11 @@ def write_npz(motion: Motion, path: Path) -> None:
         "fps": np.array(motion.fps),
         "names": np.array(motion.skeleton.names),
         "parents": np.array(motion.skeleton.parents),
-        "sample_rate": np.array(motion.sample_rate),
         "source": np.array(motion.source),
     }
-    for name in ("root", "contacts", "audio"):
+    for name in ("root", "contacts", "audio", "sample_rate"):
         if getattr(motion, name) is not None:
-            arrays[name] = getattr(motion, name)
+            arrays[name] = np.asarray(getattr(motion, name))
     with replacing(path) as aside, open(aside, "wb") as file:
         np.savez_compressed(file, **arrays)
 

@@ -24,7 +24,6 @@ from .root_frame import FPS, control_from_path, estimate_root, root_path, to_roo
 from .skeleton import BONE_LENGTHS, BONES, COURSE, TOES, Skeleton, joint_index
 
 FARTHEST = 1e6  # metres from the origin; a larger value is a fault of the file
-SAMPLE_RATE = 16_000
 HEAD = joint_index("Head")
 
 
@@ -47,7 +46,8 @@ class Motion:
         root      the path on the ground (x, z in metres, heading in radians); control follows from
                   it. Jumps of the heading by whole turns are taken out
         contacts  whether the left and the right foot are planted
-        audio     mono sound from -1 to 1 at `sample_rate` Hz; it begins with the first frame
+        audio     mono sound from -1 to 1; it begins with the first frame. It needs its
+                  `sample_rate` in Hz
         source    where the motion comes from
     Raises MotionError, with frame and joint, for arrays that do not fit.  Notebook: 00
     """
@@ -58,7 +58,7 @@ class Motion:
     root: Float[np.ndarray, "T 3"] | None = None
     contacts: Bool[np.ndarray, "T 2"] | None = None
     audio: Float[np.ndarray, "N"] | None = None
-    sample_rate: int = SAMPLE_RATE
+    sample_rate: int | None = None
     source: str = ""
 
     def __post_init__(self):
@@ -495,8 +495,10 @@ def _writable(text: str) -> str:
     return text.encode("utf-8", "replace").decode("utf-8")
 
 
-def _whole(sample_rate: object) -> int:
+def _whole(sample_rate: object) -> int | None:
     """A sample rate as an int.  Raises MotionError for what is no whole number."""
+    if sample_rate is None:
+        return None
     if not is_number(sample_rate) or sample_rate != sample_rate // 1:
         raise MotionError(f"sample_rate must be a whole number of hertz, not {sample_rate!r:.40}")
     return int(sample_rate)
@@ -509,10 +511,15 @@ def _continuous(root: np.ndarray | None) -> np.ndarray | None:
     return root
 
 
-def _sound(audio, sample_rate: int) -> np.ndarray | None:
+def _sound(audio, sample_rate: int | None) -> np.ndarray | None:
     """A copy in float32.  Raises MotionError unless it is finite mono sound."""
     if audio is None:
         return None
+    if sample_rate is None:
+        raise MotionError(
+            "audio needs its sample_rate in Hz, such as 44100: its samples do not say how fast "
+            "they are played"
+        )
     try:
         array = np.array(audio, np.float32)
     except (TypeError, ValueError):

@@ -15,6 +15,8 @@ from torch import Tensor
 
 from ..conditions.music import frame_times
 from ..motion.dance_frame import mirror, to_features, to_positions
+from ..motion.motion import Motion, MotionError
+from ..motion.planting import find_contacts
 from ..motion.scaler import Scaler
 from ..motion.skeleton import TOES
 
@@ -101,6 +103,31 @@ class DanceWindows:
         )
         some = torch.linspace(0, len(raw) - 1, min(len(raw), FITTED)).long()
         return replace(raw, motion_scaler=Scaler.fit(raw.take(some)[0]))
+
+    @classmethod
+    def of_motions(
+        cls, motions: Sequence[Motion], mels: Sequence[Float[Tensor, "_ C"]], n: int = 100
+    ) -> "DanceWindows":
+        """Windows of motions and the log-Mel of their songs, which begin with their first frames.
+
+        Contacts are found where a motion has none.
+        Raises MotionError for a motion at another rate than 20 frames/s, with missing joints or
+        with another skeleton, and ValueError as `of`.
+        """
+        for motion in motions:
+            motion.check_whole()
+            if motion.fps != FPS:
+                raise MotionError(
+                    f"{motion.name} has {motion.fps:g} frames/s: pass motion.resampled({FPS:g})"
+                )
+        dances = [motion.positions for motion in motions]
+        contacts = [
+            find_contacts(one.positions[:, list(TOES)], FPS)
+            if one.contacts is None
+            else one.contacts
+            for one in motions
+        ]
+        return cls.of(dances, contacts, mels, n)
 
     def __len__(self) -> int:
         return 2 * len(self.starts)

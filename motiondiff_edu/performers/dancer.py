@@ -7,6 +7,7 @@ import copy
 import warnings
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 import torch
@@ -22,7 +23,13 @@ from ..conditions.audio_files import SILENT, AudioError, samples_of
 from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, fingerprint, frame_times, log_mel
 from ..ddpm import Denoiser, Generators, Schedule, draw
 from ..mofusion import MoFusion, MoFusionConfig, Music
-from ..motion.checks import checked_guidance, checked_samples, checked_seconds, checked_steps
+from ..motion.checks import (
+    checked_guidance,
+    checked_samples,
+    checked_seconds,
+    checked_seed,
+    checked_steps,
+)
 from ..motion.dance_frame import to_positions
 from ..motion.motion import Motion, MotionWarning
 from ..motion.progress import bar
@@ -195,8 +202,9 @@ class Dancer(Performer):
 
     def dance(
         self,
-        sound: str | Path | np.ndarray | Tensor,
+        sound: str | Path | bytes | BinaryIO | np.ndarray | Tensor,
         *,
+        sample_rate: float | None = None,
         seconds: float | None = None,
         samples: int = 1,
         seed: int = 0,
@@ -204,11 +212,12 @@ class Dancer(Performer):
         guidance: float | None = None,
         progress: bool = True,
     ) -> Motion | list[Motion]:
-        """Dance to a sound file, or to mono sound at 16 kHz (N,) from -1 to 1.
+        """Dance to a sound file (its name, its bytes, or open), or to samples with their rate.
 
         The returned motion contains the sound. Its bones keep their lengths and its standing feet
         do not slide (`performers/finished.py`); the network's own dance is that of `dance_mel`.
 
+        sample_rate  of mono samples (N,) from -1 to 1, in Hz; a sound file has its own
         seconds  use so much of the sound from its start (default: all of it)
         samples  above 1: a list with this many dances; the first is that of samples=1
         seed     chooses the dance together with the sound: other music gets other moves. To dance
@@ -222,8 +231,9 @@ class Dancer(Performer):
         """
         count, steps = checked_samples(samples), checked_steps(steps, self.schedule.S)
         guidance = self._guidance(guidance)
+        checked_seed(seed)
         longest = None if seconds is None else round(checked_seconds(seconds) * SAMPLE_RATE)
-        audio = samples_of(sound)[:longest]
+        audio = samples_of(sound, sample_rate)[:longest]
         name = Path(sound).stem if isinstance(sound, (str, Path)) else "the sound given"
         lasts = len(audio) / SAMPLE_RATE
         frames = int(lasts * FPS)
@@ -251,7 +261,7 @@ class Dancer(Performer):
                 stacklevel=2,
             )
             heard = audio * LOUD / peak
-        mel = log_mel(heard)
+        mel = log_mel(heard, SAMPLE_RATE)
         draws = generators(seed, count, *fingerprint(mel))
         dances = self.dance_mel(
             mel.expand(count, -1, -1),

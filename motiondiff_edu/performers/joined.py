@@ -33,7 +33,7 @@ FAR = 0.25  # m in a frame: a jump that is said
 UNLIKE = 5.0
 NAMED = 3  # joints in a message
 SUDDEN = 2.0  # m/s within half a second; controls of the training change by 1.4 at most
-OFF_FLOOR = 0.15  # m: a figure whose lowest joint is higher stands, sits and lies nowhere
+OFF_FLOOR = 0.15  # m: a figure whose lowest joint is higher rests on nothing
 
 
 @dataclass(frozen=True, eq=False)

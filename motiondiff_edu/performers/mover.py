@@ -19,7 +19,13 @@ from ..conditions.clip import Clip, check
 from ..conditions.text import Read
 from ..conditions.word_encoder import WordReader
 from ..ddpm import Denoiser, Generators, Schedule, draw
-from ..motion.checks import checked_guidance, checked_samples, checked_seconds, checked_steps
+from ..motion.checks import (
+    checked_guidance,
+    checked_samples,
+    checked_seconds,
+    checked_seed,
+    checked_steps,
+)
 from ..motion.motion import Motion, MotionWarning
 from ..motion.moving_frame import D, to_features, to_positions
 from ..motion.progress import bar
@@ -35,6 +41,15 @@ from .text_mofusion import Texts
 STEPS, ETA = 50, 0.5  # defaults of DDIM
 SECONDS = 6.0
 SHORTEST, LONGEST = 2.0, 10.0  # seconds, as in training
+
+
+def checked_length(seconds: float) -> float:
+    """The length of a motion, from SHORTEST to LONGEST seconds.  Raises ValueError for others."""
+    if not SHORTEST <= checked_seconds(seconds) <= LONGEST:
+        raise ValueError(
+            f"seconds must be from {SHORTEST:g} to {LONGEST:g}, as in training, not {seconds:g}"
+        )
+    return float(seconds)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -182,18 +197,15 @@ class Mover(Performer):
         Raises TextError for a text that cannot be read, ValueError for numbers out of range.
         Source: MoFusion 3.
         """
+        count, steps = checked_samples(samples), checked_steps(steps, self.schedule.S)
+        guidance, seconds = checked_guidance(guidance), checked_length(seconds)
+        checked_seed(seed)
         if isinstance(text, Read):
             found = text
         else:
             found = self.reader.read(text)
             for note in found.notes:
                 warnings.warn(note, MotionWarning, stacklevel=2)
-        count, steps = checked_samples(samples), checked_steps(steps, self.schedule.S)
-        guidance = checked_guidance(guidance)
-        if not SHORTEST <= checked_seconds(seconds) <= LONGEST:
-            raise ValueError(
-                f"seconds must be from {SHORTEST:g} to {LONGEST:g}, as in training, not {seconds:g}"
-            )
         ids = self.reader.encoded([found.words] * count)
         draws, frames = generators(seed, count), round(seconds * FPS)
         whole = -(-frames // GRID) * GRID  # as in training; what is too much is cut off

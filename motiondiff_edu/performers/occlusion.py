@@ -10,7 +10,7 @@ import numpy as np
 import torch
 from jaxtyping import Float
 
-from ..conditions.music import log_mel
+from ..conditions.music import SAMPLE_RATE, log_mel
 from ..conditions.silence import WIDTH, silence_hit
 from .dancer import Dancer
 
@@ -42,7 +42,7 @@ def occlusion(
     steps: int = 20,
     batch: int = 6,
 ) -> Occlusion:
-    """Dance to the song, and again with the sound at each of `times` (seconds) silenced.
+    """Dance to the song (16 kHz), and again with the sound at each of `times` (seconds) silenced.
 
     The start noise is the same, and DDIM adds none (eta = 0), so only the music differs. `batch`
     songs are danced to at once. Without a `generator` the seed is 0.
@@ -50,7 +50,8 @@ def occlusion(
     """
     generator = generator or torch.Generator().manual_seed(0)
     start = torch.randn(1, frames, dancer.config.D, generator=generator)
-    mels = log_mel(np.stack([audio, *(silence_hit(audio, float(time), width) for time in times)]))
+    quieter = [silence_hit(audio, float(time), width) for time in times]
+    mels = log_mel(np.stack([audio, *quieter]), SAMPLE_RATE)
     dances = [
         dancer.dance_mel(mel, frames, start=start.expand(len(mel), -1, -1), steps=steps, eta=0.0)
         for mel in mels.split(batch)

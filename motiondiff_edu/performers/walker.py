@@ -78,7 +78,7 @@ class Walker(Performer):
         The result has only the new frames. It begins one frame after the given motion, in the same
         world; `motion.then(more)` joins the two. Its bones are as long as the given ones, and feet
         that stand do not slide (`performers/joined.py`; `rollout.generate` has the network's own).
-        A smaller or larger figure than the course's walks as that one would, at its own size.
+        Other body sizes work: the motion is scaled to the course's figure, and scaled back.
 
         control  forward m/s, left m/s, turning rad/s; 20 rows a second
         seconds  cut the control to this length, or hold its last row (default: keep its length)

@@ -12,6 +12,7 @@ from jaxtyping import Float, Int
 from torch import Tensor
 
 from ..motion.clip import Clip
+from ..motion.motion import Motion
 from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 
@@ -34,16 +35,18 @@ class Windows:
     @classmethod
     def of(
         cls,
-        clips: Sequence[Clip],
+        clips: Sequence[Clip | Motion],
         T_h: int = 10,
         T_p: int = 10,
         scalers: tuple[Scaler, Scaler] | None = None,
     ) -> "Windows":
-        """Collect clips; the scalers (pose, control) are fitted on them unless given.
+        """Collect clips or motions; the scalers (pose, control) are fitted on them unless given.
 
-        Raises ValueError when no clip is as long as a window, or one is not at 20 frames/s.
+        Raises ValueError when no clip is as long as a window, or one is not at 20 frames/s, and
+        MotionError for a motion that has no clip (`Motion.to_clip`).
         Notebook: 07
         """
+        clips = [one.to_clip() if isinstance(one, Motion) else one for one in clips]
         length = T_h + T_p
         starts = []
         first = 0

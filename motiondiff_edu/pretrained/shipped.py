@@ -17,7 +17,7 @@ from ..editing.by_words import STRENGTH
 from ..editing.inbetween import OURS, Departures
 from ..editing.masks import checked_known
 from ..editing.plausible import each_until_plausible, longest_glide
-from ..motion.checks import checked_count, checked_samples
+from ..motion.checks import checked_count, checked_samples, checked_seed, checked_strength
 from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
 from ..motion.progress import bar
 from ..motion.root_frame import FPS
@@ -54,6 +54,7 @@ def inbetween(
     Source: MoFusion 4.4.  Notebook: 15
     """
     known, count = _fitting(motion, known), checked_samples(samples)
+    checked_seed(seed)
     steps = min(checked_count(steps, "steps"), _shipped("inbetweens").schedule.S)
     if known.all():
         raise MotionError(f"{motion.name}: every joint is known, so there is nothing to generate")
@@ -98,6 +99,7 @@ def reconstruct(
     ValueError for a number of samples under 1.  Source: MoDiff III-E.
     """
     known, count = _fitting(motion, known), checked_samples(samples)
+    checked_seed(seed)
     walker, draws = _shipped("walker"), generators(seed, count)
     watch = bar("reconstructing", reconstruction.ROUNDS, progress)
     made = [
@@ -124,10 +126,10 @@ def edit(
     figure does, the legs included. `known` joints keep their places about the root; while the
     pelvis is known from the first frame on, the path stays, too, and they are exactly where they
     were. Bones have the lengths of the motion's, and feet that stand do not slide
-    (`performers/finished.py`). `strength`, above 0 and up to 1, is the share of the noise: the
-    more, the less of the motion stays; with 1 only the known joints do. With `samples` above 1, the
-    result is a list with this many motions; the first is that of samples=1. A MotionWarning says
-    where the feet slide, and did not before.
+    (`performers/finished.py`). `strength`, above 0 and up to 1, is the share of the noise:
+    higher values keep less of the motion; 1 keeps only the known joints. With `samples` above 1,
+    the result is a list with this many motions; the first is that of samples=1. A MotionWarning
+    says where the feet slide, and did not before.
     Raises MotionError if motion and mask do not fit, or the motion is shorter or longer than those
     of the training, TextError for a text that cannot be read, and ValueError for numbers out of
     range.
@@ -148,7 +150,10 @@ def edit(
     mask = None if known is None else _fitting(motion, known)
     if mask is not None and mask.all():
         raise MotionError(f"{motion.name}: everything is known, so nothing can be edited")
-    count, mover = checked_samples(samples), _shipped("mover")
+    count = checked_samples(samples)
+    checked_seed(seed)
+    checked_strength(strength)
+    mover = _shipped("mover")
     for note in mover.reader.read(text).notes:
         warnings.warn(note, MotionWarning, stacklevel=2)
     made = by_words.edit_by_words(
@@ -165,7 +170,7 @@ def edit(
         warnings.warn(
             f"{motion.name}{which}: both feet slide between frames {first} and {last}. The "
             "sentence must say what the legs do as well, such as 'walks forward while waving', and "
-            "that has to go with what is kept",
+            "match the joints that are kept",
             MotionWarning,
             stacklevel=2,
         )

@@ -41,7 +41,9 @@ def songs_as_mel(n: int, seed: int, seconds: float) -> list[MelSong]:
 def without_sound(song: "Song") -> MelSong:
     """The score of a song, which keeps its length, and its log-Mel."""
     silence = np.broadcast_to(np.zeros(1, np.float32), song.audio.shape)  # it takes no memory
-    return replace(song, audio=silence), log_mel(torch.from_numpy(song.audio).float())
+    return replace(song, audio=silence), log_mel(
+        torch.from_numpy(song.audio).float(), song.sample_rate
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,12 +16,12 @@ from .style import SMALL, figure
 
 def levels_over_sound(
     audio: Float[np.ndarray, "N"],
+    sample_rate: int,
     maps: Mapping[str, Float[np.ndarray, "_ M"]],
     token_times: Float[np.ndarray, "M"],
     beats: Float[np.ndarray, "K"],
     seconds: float,
     words: str,
-    sample_rate: int = 16_000,
 ) -> Figure:
     """A song with its beats, and below it where each level reads.
 

@@ -108,7 +108,7 @@ class Lane:
 class Soundtrack:
     """What is played with a motion, and what is drawn around its waveform.
 
-    `audio`: (N,) from -1 to 1 at `sample_rate` Hz, or the bytes of a sound file.
+    `audio`: (N,) from -1 to 1 with their `sample_rate` in Hz, or the bytes of a sound file.
     `beats`, `downbeats`: marked, seconds.
     `codec`: "ogg", "flac" or "wav", as the page gets it.
     `listening`: what a network reads of it.
@@ -117,7 +117,7 @@ class Soundtrack:
     audio: Any
     beats: Any = None
     downbeats: Any = None
-    sample_rate: int = 16_000
+    sample_rate: int | None = None
     codec: str = "ogg"
     listening: Listening | None = None
 

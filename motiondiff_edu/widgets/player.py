@@ -14,7 +14,6 @@ import html
 import json
 import math
 import os
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -26,10 +25,10 @@ import numpy as np
 import traitlets
 from numpy.typing import ArrayLike
 
-from .._files import replacing
+from .._files import check_writable, replacing
 from ..motion.checks import checked_rate, is_number
 from ..viz import body, style
-from . import lane, module, packing, poster, sound
+from . import films, lane, module, packing, poster
 from .lane import Soundtrack
 from .still import page_on_picture, with_still
 
@@ -124,8 +123,8 @@ class Player(anywidget.AnyWidget):
     `past` frames were given and are drawn paler; `contacts` (T, 2) bool marks planted feet; `path`
     (n, 2) [x, z] is drawn on the floor; each may be one value for all figures or a list (one array
     of contacts belongs to the first figure).
-    `audio`: (N,) from -1 to 1 at 16 kHz, the bytes of a sound file, or a `Soundtrack`. It is played
-    with the motion, cut or filled up to its length (with a warning), above its waveform.
+    `audio`: the bytes of a sound file, or a `Soundtrack`, which takes samples with their rate. It
+    is played with the motion, cut or filled up to its length (with a warning), above its waveform.
     `look`: layout, height, autoplay, and the parents of another skeleton's joints.
     `frame` and `playing` can be read and set.
     Raises ValueError with figure, frame and joint where a position is not finite or beyond reach,
@@ -254,7 +253,11 @@ class Player(anywidget.AnyWidget):
         return Path(path).expanduser()
 
     def save_gif(self, path: str | os.PathLike, size: tuple[int, int] = (400, 360)) -> Path:
-        """Write the figure as an endless GIF, each figure `size` pixels."""
+        """Write the figure as an endless GIF, each figure `size` pixels.
+
+        Raises OSError, before a picture is drawn, for a place where no file can be made.
+        """
+        check_writable(path)
         palette = poster.film_palette(self._figures, size)
         fps = self._options["fps"]
         every = math.ceil(fps / GIF_FPS)
@@ -276,32 +279,12 @@ class Player(anywidget.AnyWidget):
     def save_mp4(self, path: str | os.PathLike, size: tuple[int, int] = (480, 432)) -> Path:
         """Write the figure as MP4, each figure `size` pixels, with its sound.
 
-        ImportError without imageio-ffmpeg.
+        Raises as `films.write_mp4`: ImportError without imageio-ffmpeg, FilmError if it fails.
         """
-        try:
-            import imageio_ffmpeg
-        except ImportError as error:
-            raise ImportError(
-                "save_mp4 needs the package imageio-ffmpeg; save_gif does not"
-            ) from error
-        width = size[0] * len(self._figures)
-        with replacing(path) as part, tempfile.TemporaryDirectory() as folder:
-            extra = {}
-            if self._music is not None:
-                wave, file = self._music.sound, Path(folder) / "sound.wav"
-                file.write_bytes(sound.encode(wave.samples, wave.sample_rate, "wav")[0])
-                extra = {"audio_path": str(file), "audio_codec": "aac", "ffmpeg_log_level": "error"}
-            writer = imageio_ffmpeg.write_frames(
-                str(part), (width, size[1]), fps=self._options["fps"], macro_block_size=2,
-                output_params=["-f", "mp4"], **extra,
-            )  # fmt: skip
-            try:
-                writer.send(None)
-                for picture in poster.film(self._figures, self._options["fps"], size):
-                    writer.send(np.ascontiguousarray(picture))
-            finally:
-                writer.close()  # on an error, too: ffmpeg must let go of the file
-        return Path(path).expanduser()
+        fps = self._options["fps"]
+        pictures = poster.film(self._figures, fps, size)
+        music = None if self._music is None else self._music.sound
+        return films.write_mp4(path, pictures, (size[0] * len(self._figures), size[1]), fps, music)
 
 
 def _hundredths(n: int, fps: float) -> list[int]:

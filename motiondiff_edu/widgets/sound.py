@@ -9,6 +9,7 @@ Notebook: 12
 
 import io
 import math
+import os
 import warnings
 import wave
 from dataclasses import dataclass
@@ -42,22 +43,30 @@ class Sound:
 
 def as_sound(
     audio: object,
-    sample_rate: int | float = 16_000,
+    sample_rate: int | float | None = None,
     seconds: float | None = None,
     codec: str = "ogg",
 ) -> Sound:
     """A Sound, cut or padded to `seconds`.
 
-    `audio` is samples (N,) between -1 and 1, or the bytes of a WAV, FLAC, Ogg or MP3 file. Louder
-    samples are scaled down together; channels of a file are averaged. A warning reports when more
-    than 0.05 s are cut or added.
-    Raises ValueError for another shape, integers, samples that are not finite, and unreadable
-    bytes.
+    `audio` is samples (N,) between -1 and 1 with their `sample_rate` in Hz, or the bytes of a WAV,
+    FLAC, Ogg or MP3 file. Louder samples are scaled down together; channels of a file are averaged.
+    A warning reports when more than 0.05 s are cut or added.
+    Raises ValueError for samples without their rate, another shape, integers, samples that are not
+    finite, unreadable bytes, and the name of a file.
     """
     if codec not in CODECS:
         raise ValueError(f"codec must be one of {', '.join(CODECS)}, not {codec!r}")
     if isinstance(audio, bytes | bytearray | memoryview):
         audio, sample_rate = _decoded(bytes(audio))
+    if isinstance(audio, str | os.PathLike) or hasattr(audio, "read"):
+        raise ValueError(
+            "audio is the name of a file, or an open file: pass its bytes, Path(name).read_bytes()"
+        )
+    if sample_rate is None:
+        raise ValueError(
+            "the samples need their rate, in Hz: pass Soundtrack(audio, sample_rate=...)"
+        )
     samples = _checked(audio, sample_rate)
     sample_rate = int(sample_rate)  # 16000.0 is a rate as well, but not to libsndfile
     samples = _fitted(samples, sample_rate, seconds)

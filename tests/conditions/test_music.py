@@ -115,31 +115,31 @@ def test_bands_that_cannot_be_are_refused(arguments):
 )
 def test_log_mel_is_librosas(n):
     audio = loudness(1 + n / SAMPLE_RATE)[:n]
-    ours = log_mel(torch.from_numpy(audio))
+    ours = log_mel(torch.from_numpy(audio), 16_000)
     assert ours.shape == (1 + n // 512, 80) and ours.dtype == torch.float32
     np.testing.assert_allclose(ours.numpy(), their_log_mel(audio), atol=1e-4)
 
 
 def test_a_batch_longer_than_one_piece_is_as_one_by_one():
     audio = np.stack([loudness(10.0, f) for f in (200, 900)])
-    both = log_mel(torch.from_numpy(audio))
+    both = log_mel(torch.from_numpy(audio), 16_000)
     assert both.shape == (2, 313, 80)
     for one, sound in zip(both, audio, strict=True):
-        torch.testing.assert_close(one, log_mel(torch.from_numpy(sound)), atol=1e-5, rtol=0)
+        torch.testing.assert_close(one, log_mel(torch.from_numpy(sound), 16_000), atol=1e-5, rtol=0)
 
 
 def test_batches_precision_and_arrays():
     audio = np.stack([[loudness(0.7, f, seed) for f in (200, 900, 3000)] for seed in (1, 2)])
-    ours = log_mel(audio)
+    ours = log_mel(audio, 16_000)
     assert ours.shape == (2, 3, 22, 80)
     np.testing.assert_allclose(ours.numpy(), their_log_mel(audio), atol=1e-4)
-    double = log_mel(torch.from_numpy(audio[1, 2]).double())
+    double = log_mel(torch.from_numpy(audio[1, 2]).double(), 16_000)
     assert double.dtype == torch.float64
     torch.testing.assert_close(double.float(), ours[1, 2], atol=1e-4, rtol=0)
 
 
 def test_silence_is_the_floor_and_a_full_sine_is_what_a_hand_finds():
-    assert torch.equal(log_mel(torch.zeros(3000)), torch.full((6, 80), 1e-5).log())
+    assert torch.equal(log_mel(torch.zeros(3000), 16_000), torch.full((6, 80), 1e-5).log())
     # the bin of 1000 Hz: a sine there gives half the window's sum, 256, and half of that to either
     # side
     k = 64
@@ -147,14 +147,15 @@ def test_silence_is_the_floor_and_a_full_sine_is_what_a_hand_finds():
     spectrum = torch.zeros(513, dtype=torch.float64)
     spectrum[k - 1 : k + 2] = torch.tensor([128.0, 256.0, 128.0]) ** 2
     by_hand = (music.mel_filters() @ spectrum).clamp(min=1e-5).log()
-    torch.testing.assert_close(log_mel(sine)[10], by_hand, atol=1e-4, rtol=0)
+    torch.testing.assert_close(log_mel(sine, 16_000)[10], by_hand, atol=1e-4, rtol=0)
     assert 7 < float(by_hand.max()) < 8
 
 
 def test_ten_times_as_loud_is_the_same_shift_everywhere():
     audio = torch.from_numpy(loudness(1.0)).double()
     torch.testing.assert_close(
-        log_mel(10 * audio) - log_mel(audio), torch.full((32, 80), np.log(100.0)).double()
+        log_mel(10 * audio, 16_000) - log_mel(audio, 16_000),
+        torch.full((32, 80), np.log(100.0)).double(),
     )
 
 
@@ -162,7 +163,7 @@ def test_a_click_lies_in_the_frame_of_its_time_and_between_two_frames_it_is_hear
     for sample, frames in ((512 * 9, [9]), (512 * 9 + 256, [9, 10])):
         click = torch.zeros(16000)
         click[sample] = 1.0
-        power = log_mel(click).exp().sum(1)
+        power = log_mel(click, 16_000).exp().sum(1)
         assert sorted(power.topk(len(frames)).indices.tolist()) == frames
         assert np.allclose(frame_times(32)[frames].mean(), sample / SAMPLE_RATE)
         loudest = float(
@@ -176,20 +177,28 @@ def test_a_click_lies_in_the_frame_of_its_time_and_between_two_frames_it_is_hear
 def test_gradients_pass_also_after_a_first_call_without():
     music._tools.cache_clear()
     with torch.inference_mode():
-        log_mel(torch.rand(2000))
+        log_mel(torch.rand(2000), 16_000)
     audio = torch.rand(2000, requires_grad=True)
-    log_mel(audio).sum().backward()
+    log_mel(audio, 16_000).sum().backward()
     assert float(audio.grad.abs().sum()) > 0
 
 
 @pytest.mark.parametrize("audio", [torch.zeros(0), torch.zeros(2, 0)])
 def test_no_samples_are_refused(audio):
     with pytest.raises(ValueError, match="float samples"):
-        log_mel(audio)
+        log_mel(audio, 16_000)
+
+
+@pytest.mark.parametrize("features", [log_mel, beats_of])
+def test_sound_at_another_rate_is_refused(features):
+    with pytest.raises(ValueError, match=r"at 22050 Hz, and this needs 16000 Hz: .*samples_of"):
+        features(torch.zeros(22_050), 22_050)
+    with pytest.raises(TypeError, match="sample_rate"):
+        features(torch.zeros(22_050))
 
 
 def test_ten_seconds_are_313_frames_not_320():
-    mel = log_mel(torch.zeros(160_000))
+    mel = log_mel(torch.zeros(160_000), 16_000)
     assert len(mel) == 313
     times = frame_times(313)
     assert times[-1] == 312 * 512 / 16000 and torch.allclose(
@@ -212,7 +221,7 @@ def test_crops_have_one_length_and_tell_their_times():
 
 def test_a_crop_up_to_the_very_end_is_there_for_any_length():
     for n in range(40_000, 41_024, 37):
-        mel, end = log_mel(torch.zeros(n)), n / SAMPLE_RATE
+        mel, end = log_mel(torch.zeros(n), 16_000), n / SAMPLE_RATE
         crop, times = crop_seconds(mel, end - 1.5, 1.5)
         assert len(crop) == 46 and times[-1] <= 1.5
 
@@ -222,9 +231,9 @@ def test_a_crop_up_to_the_very_end_is_there_for_any_length():
 def test_the_trackers_lag_is_what_is_taken_out(bpm, kind):
     beats = np.arange(0.337, 24.5, 60 / bpm)
     audio = drums(beats, 25, kind)
-    raw = beats_of(audio, lag=0)
+    raw = beats_of(audio, 16_000, lag=0)
     assert 0.01 < offset(beats, raw) < 0.021
-    found = beats_of(audio)
+    found = beats_of(audio, 16_000)
     np.testing.assert_allclose(found, np.maximum(raw - 0.02, 0))
     assert (
         f_measure(found, beats, window=0.04) > 0.9
@@ -237,27 +246,27 @@ def test_beats_of_composed_songs_are_those_of_the_score():
     composed = [
         compose(3, genre, seconds=24) for genre in ("house", "hiphop", "pop", "latin", "waltz")
     ]
-    found = [beats_of(song.audio, lag=0) for song in composed]
+    found = [beats_of(song.audio, 16_000, lag=0) for song in composed]
     right = [k for k in range(5) if f_measure(found[k], composed[k].beats) > 0.9]
     assert len(right) >= 4, "the tracker may follow the off-beat in one"
     assert all(0.015 < offset(composed[k].beats, found[k]) < 0.035 for k in right)
 
 
 def test_beats_of_nothing_are_none():
-    assert beats_of(torch.zeros(64_000)).shape == (0,)
+    assert beats_of(torch.zeros(64_000), 16_000).shape == (0,)
 
 
 @pytest.mark.parametrize("song, at_least", [("vibe_ace", 0.95), ("nutcracker", 0.9)])
 def test_real_songs_have_the_beats_another_tracker_found(real_data, song, at_least):
     others = np.loadtxt(real_data / f"audio_beats_machine/{song}.essentia_multifeature.beats")
-    found = beats_of(audio_files.read_audio(real_data / f"audio/{song}.ogg"))
+    found = beats_of(audio_files.read_audio(real_data / f"audio/{song}.ogg"), 16_000)
     assert f_measure(found, others) >= at_least and abs(offset(others, found)) < 0.015
     assert np.median(np.diff(found)) == pytest.approx(np.median(np.diff(others)), rel=0.01)
 
 
 def test_speech_is_heard_like_music(real_data):
     speech = audio_files.read_audio(real_data / "audio/speech_libri1.ogg")
-    mel = log_mel(speech)
+    mel = log_mel(speech, 16_000)
     np.testing.assert_allclose(mel.numpy(), their_log_mel(speech.numpy()), atol=1e-4)
     low, high = mel[:, 2:25].mean(), mel[:, 70:].mean()
     assert low > high + 2, "a voice is low"
@@ -267,7 +276,7 @@ def test_listening_does_not_import_librosa():
     code = (
         "import sys, motiondiff_edu, motiondiff_edu.conditions.music as m, "
         "motiondiff_edu.conditions.audio_files;import torch; "
-        "m.log_mel(torch.zeros(600));print([name for name in ('librosa', 'numba', "
+        "m.log_mel(torch.zeros(600), 16_000);print([name for name in ('librosa', 'numba', "
         "'soundfile') if name in sys.modules])"
     )
     told = subprocess.run(

@@ -11,7 +11,7 @@ import pytest
 
 from motiondiff_edu.widgets.player import MODULE
 
-PATIENCE = 180_000  # ms; how long a busy machine may take for anything a test waits for
+PATIENCE = 600_000  # ms; how long a busy machine may take for anything a test waits for
 FLAGS = (
     "--no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
     "--disable-component-update --disable-sync"

@@ -9,6 +9,7 @@ import subprocess
 
 import numpy as np
 import pytest
+from browser import PATIENCE
 from synthetic_walk import walk
 
 from motiondiff_edu.motion.bvh import BvhError, read_bvh
@@ -181,7 +182,7 @@ def test_blender_agrees(tmp_path, turning, root):
         script,
     ]
     command += ["--", tmp_path / "walk.bvh", tmp_path / "joints.json"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=240)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE / 1000)
     assert done.returncode == 0, done.stdout + done.stderr
     seen = json.loads((tmp_path / "joints.json").read_text())
     assert seen["fps"] == 20

@@ -182,7 +182,11 @@ HOLE = np.where(np.arange(252).reshape(4, 21, 3) == 100, np.inf, 0.0)
         (lambda: Motion(P + 2e6), "not plausible"),
         (lambda: Motion(P, fps=0), "frames a second above 0 and at most 10,000, not 0"),
         (lambda: Motion(P, fps=float("nan")), "frames a second above 0"),
-        (lambda: Motion(P, audio=np.full(9, np.nan)), "one channel of finite samples"),
+        (
+            lambda: Motion(P, audio=np.full(9, np.nan), sample_rate=16_000),
+            "one channel of finite samples",
+        ),
+        (lambda: Motion(P, audio=np.zeros(9)), "audio needs its sample_rate in Hz"),
         (lambda: Motion(P)[7:], r"no frame lies within \[7:None\]"),
         (lambda: Motion(P).between(0.1, 9), "0.1 to 9 s are not within its 0.20 s"),
         (lambda: Motion(P[:1]).to_clip(), "one frame"),
@@ -214,6 +218,13 @@ def test_npz_keeps_everything_exactly(tmp_path):
     assert back.skeleton == STICK
     bare = read_motion(Motion(P).save(tmp_path / "bare.NPZ"))
     assert bare.root is None and bare.contacts is None and bare.audio is None
+    assert bare.sample_rate is None
+
+
+def test_an_npz_with_sound_of_an_unknown_rate_is_refused(tmp_path):
+    np.savez(tmp_path / "song.npz", positions=P, fps=20, audio=np.zeros(900))
+    with pytest.raises(MotionError, match=r"song\.npz: audio needs its sample_rate in Hz"):
+        read_motion(tmp_path / "song.npz")
 
 
 def test_bvh_there_and_back_within_its_rounding(tmp_path, capsys):

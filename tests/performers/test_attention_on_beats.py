@@ -156,7 +156,7 @@ def test_notebook_12_dances_to_an_upload_and_says_what_is_wrong_with_it(monkeypa
         if c["id"] in ("imports", "song", "own-song", "upload")
     ]
     names = notebook_cells.run(cells, {"display": lambda *shown: None})
-    names["beats_of"] = lambda audio: np.array([0.5, 1.0, 7.0])  # librosa is slow to import
+    names["beats_of"] = lambda audio, rate: np.array([0.5, 1.0, 7.0])  # librosa is slow to import
 
     def upload(content: bytes) -> None:
         when = datetime.now(UTC)
@@ -192,10 +192,12 @@ def test_figures_say_what_they_show():
     song, moments = clicks(1.5, (0.5,)), np.array([0.2, 0.5, 1.1])
     shares = attention_on_beats.share_near(found["down, 20 a second"], times, moments)
     figures = [
-        viz.levels_over_sound(song, found, times, np.array([0.5, 1.0]), 1.5, "one"),
+        viz.levels_over_sound(song, 16_000, found, times, np.array([0.5, 1.0]), 1.5, "one"),
         viz.time_maps({"a": found["down, 20 a second"]}, times, 1.5, "two"),
         viz.weight_and_effect(shares, np.ones((3, 30)), moments, 1.5, "three"),
-        viz.before_and_after({"song": log_mel(song).numpy()}, np.arange(47) / 31.25, [0.5], "four"),
+        viz.before_and_after(
+            {"song": log_mel(song, 16_000).numpy()}, np.arange(47) / 31.25, [0.5], "four"
+        ),
     ]
     assert [caption(fig) for fig in figures] == ["one", "two", "three", "four"]
     assert len(figures[0].axes) == 6 and [len(axis.lines) for axis in figures[0].axes] == [2] * 6

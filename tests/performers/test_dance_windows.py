@@ -1,11 +1,14 @@
 """Windows of dance and music: the same seconds, mirrored whole; and what losses need of them."""
 
+import numpy as np
 import pytest
 import torch
 from synthetic_dance import material, windows
 
 from motiondiff_edu.kinematic_loss import kinematic_parts
 from motiondiff_edu.motion.dance_frame import body_of, to_positions
+from motiondiff_edu.motion.motion import Motion, MotionError
+from motiondiff_edu.motion.planting import find_contacts
 from motiondiff_edu.motion.skeleton import JOINTS, MIRROR, TOES
 from motiondiff_edu.performers.dance_windows import DanceWindows, mel_frames, toes_moved
 
@@ -27,6 +30,22 @@ def test_two_dances_to_one_song_share_its_music():
     alone = DanceWindows.of(dances, contacts, mels, 40)
     torch.testing.assert_close(mel[12:], everything(alone)[1])
     assert torch.equal(mel[:12], mel[12:24])
+
+
+def test_motions_are_taken_with_their_own_contacts_or_those_that_are_found():
+    dances, contacts, mels = material()
+    ours = [Motion(x, contacts=c) for x, c in zip(dances, contacts, strict=True)]
+    for made, wanted in zip(
+        everything(DanceWindows.of_motions(ours, mels, 40)),
+        everything(DanceWindows.of(dances, contacts, mels, 40)),
+        strict=True,
+    ):
+        assert torch.equal(made, wanted)
+    bare = DanceWindows.of_motions([Motion(x) for x in dances], mels, 40)
+    found = [find_contacts(x[:, list(TOES)], 20.0) for x in dances]
+    assert torch.equal(bare.contacts, torch.from_numpy(np.concatenate(found)))
+    with pytest.raises(MotionError, match=r"30 frames/s: pass motion.resampled\(20\)"):
+        DanceWindows.of_motions([Motion(dances[0], fps=30)], mels[:1], 40)
 
 
 def test_music_and_motion_of_a_window_are_of_the_same_seconds():

@@ -210,16 +210,19 @@ def test_dancing_to_sound(tmp_path: Path):
         one.model, one.schedule, one.motion_scaler, Scaler(torch.zeros(80), torch.ones(80))
     )
     sound = 0.3 * torch.randn(2 * 16_000, generator=seeded())
-    out = one.dance(sound, steps=2)
+    out = one.dance(sound, sample_rate=16_000, steps=2)
     assert out.positions.shape == (40, 21, 3) and out.fps == 20 and out.sample_rate == 16_000
     assert np.array_equal(out.audio, sound.numpy())
-    again, other = one.dance(sound, seed=0, steps=2), one.dance(sound, seed=1, steps=2)
+    again, other = (
+        one.dance(sound, sample_rate=16_000, seed=0, steps=2),
+        one.dance(sound, sample_rate=16_000, seed=1, steps=2),
+    )
     assert (out.positions == again.positions).all() and not (out.positions == other.positions).all()
-    cut = one.dance(sound, seconds=1.5, steps=2)
+    cut = one.dance(sound, sample_rate=16_000, seconds=1.5, steps=2)
     assert len(cut) == 30 and len(cut.audio) == 24_000
     with pytest.warns(UserWarning, match="lasts 2.0 s, and the dance ends with it"):
-        assert len(one.dance(sound, seconds=99, steps=2)) == 40
-    first, second = one.dance(sound, samples=2, steps=2)
+        assert len(one.dance(sound, sample_rate=16_000, seconds=99, steps=2)) == 40
+    first, second = one.dance(sound, sample_rate=16_000, samples=2, steps=2)
     assert len(first) == len(second) == 40 and not (first.positions == second.positions).all()
     soundfile.write(tmp_path / "noise.wav", sound.numpy(), 16_000, subtype="FLOAT")
     read = one.dance(tmp_path / "noise.wav", steps=2)
@@ -227,6 +230,31 @@ def test_dancing_to_sound(tmp_path: Path):
     assert abs(read.audio - (sound - sound.mean()).numpy()).max() < 1e-3
     with pytest.raises(ValueError, match="spelling"):
         one.dance(tmp_path / "nothing.wav")
+
+
+def test_a_sound_lasts_as_long_at_any_rate_and_from_any_source(tmp_path: Path):
+    """A tone of 2 s as samples at three rates, as bytes, and as an open file: 40 frames each."""
+    import soundfile
+
+    one = replace(dancer(replace(UNET, C=80)), mel_scaler=Scaler.nothing(80))
+
+    def tone(rate: int) -> np.ndarray:
+        return 0.5 * np.sin(2 * np.pi * 440 * np.arange(2 * rate) / rate)
+
+    path = tmp_path / "tone.wav"
+    soundfile.write(path, tone(22_050), 22_050, subtype="FLOAT")
+    how = {"steps": 2, "progress": False}
+    ours = one.dance(tone(16_000), sample_rate=16_000, **how)
+    with path.open("rb") as file:
+        others = [
+            one.dance(tone(22_050), sample_rate=22_050, **how),
+            one.dance(torch.from_numpy(tone(44_100)), sample_rate=44_100.0, **how),
+            one.dance(path.read_bytes(), **how),
+            one.dance(file, **how),
+        ]
+    for other in others:
+        assert (len(other), other.sample_rate) == (40, 16_000)
+        np.testing.assert_allclose(other.audio[800:-800], ours.audio[800:-800], atol=2e-3)
 
 
 @pytest.mark.parametrize("steps", [4, None])
@@ -241,7 +269,8 @@ def test_the_bar_is_full_at_the_end_with_guidance_as_well(guidance, steps, monke
     monkeypatch.setattr("motiondiff_edu.performers.dancer.bar", counting)
     one = dancer(replace(UNET, C=80))
     one = replace(one, mel_scaler=Scaler.nothing(80), card={"recipe": {"no_music": 0.1}})
-    one.dance(0.3 * torch.randn(16_000, generator=seeded()), steps=steps, guidance=guidance)
+    noise = 0.3 * torch.randn(16_000, generator=seeded())
+    one.dance(noise, sample_rate=16_000, steps=steps, guidance=guidance)
     assert totals == [len(moved)] == [(steps or 12) + 1] and moved[-1] == 0
 
 
@@ -251,9 +280,9 @@ def test_a_very_quiet_song_is_danced_to_as_if_it_were_louder():
     one = replace(dancer(replace(UNET, C=80)), mel_scaler=Scaler.nothing(80))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        loud = one.dance(song, steps=2, progress=False)
+        loud = one.dance(song, sample_rate=16_000, steps=2, progress=False)
     with pytest.warns(UserWarning, match="very quiet .its loudest sample is 0.002"):
-        quiet = one.dance(song * 0.002 / LOUD, steps=2, progress=False)
+        quiet = one.dance(song * 0.002 / LOUD, sample_rate=16_000, steps=2, progress=False)
     np.testing.assert_allclose(quiet.positions, loud.positions, atol=1e-3)
     np.testing.assert_allclose(quiet.audio, song * 0.002 / LOUD, atol=1e-9)  # its own sound
 
@@ -269,6 +298,11 @@ def test_a_very_quiet_song_is_danced_to_as_if_it_were_louder():
         (np.full(7000, 0.1), {}, "0.438 s of sound are too short: at least 0.5 s are needed"),
         (np.zeros(16_000), {}, "silent from start to end"),
         (np.repeat([0.0, 0.1], 16_000), {"seconds": 0.9}, "given is silent in its first 0.9 s"),
+        (np.full(16_000, 0.1), {"sample_rate": None}, "pass sample_rate, in Hz"),
+        (np.full(16_000, 0.1), {"sample_rate": 22.05}, "from 1000 to 768000 Hz, not 22.05"),
+        (np.full(16_000, 0.1), {"sample_rate": np.nan}, "from 1000 to 768000 Hz, not nan"),
+        ("song.ogg", {}, "a sound file has its own sample rate: leave sample_rate out"),
+        (b"RIFF", {}, "leave sample_rate out"),
         (np.zeros(16_000), {"seconds": -3}, "seconds must be above 0"),
         (np.zeros(16_000), {"seconds": np.nan}, "a number above 0"),
         (np.zeros(16_000), {"samples": 0}, "samples must be a whole number of at least 1, not 0"),
@@ -277,7 +311,7 @@ def test_a_very_quiet_song_is_danced_to_as_if_it_were_louder():
 def test_sound_that_cannot_be_danced_to_is_refused_in_words(sound, options, told):
     one = dancer(MoFusionConfig(**{**UNET.as_dict(), "C": 80}))
     with pytest.raises(ValueError, match=told):
-        one.dance(sound, **options)
+        one.dance(sound, **{"sample_rate": 16_000} | options)
 
 
 def test_a_dancer_moved_is_a_copy_that_dances_alike():

@@ -53,7 +53,8 @@ def test_dances_have_the_usual_guidance():
     assert plain.usual_guidance == 1 and torch.equal(danced(plain), danced(plain, guidance=1))
     sound = 0.1 * np.sin(np.arange(32_000) / 9)
     usual, one = (
-        GUIDED.dance(sound, steps=4, progress=False, **how) for how in ({}, {"guidance": 1})
+        GUIDED.dance(sound, sample_rate=16_000, steps=4, progress=False, **how)
+        for how in ({}, {"guidance": 1})
     )
     assert np.abs(usual.positions - one.positions).max() > 1e-4
 
@@ -80,4 +81,4 @@ def test_what_cannot_be_guided_says_so():
     with pytest.raises(ValueError, match="never without its music"):
         dancer_to_mel().dance_mel(MEL, 20, steps=2, guidance=2)
     with pytest.raises(ValueError, match="guidance must be a number"):
-        GUIDED.dance(np.zeros(16_000), guidance=-1, progress=False)
+        GUIDED.dance(np.zeros(16_000), sample_rate=16_000, guidance=-1, progress=False)

@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
+from synthetic_walk import walk
 
+import motiondiff_edu as md
 from motiondiff_edu.motion.clip import Clip
 from motiondiff_edu.performers.windows import Windows, typical_change
 
@@ -24,6 +26,15 @@ def windows() -> Windows:
     return Windows.of(
         [ramp_clip(n, frames) for n, frames in enumerate([9, 5, 13, 7, 30])], T_H, T_P
     )
+
+
+def test_motions_are_taken_as_their_clips():
+    motions = [md.Motion(walk(frames=frames, turn=0.3)[0], source="a") for frames in (9, 14)]
+    ours, theirs = (Windows.of(x, T_H, T_P) for x in (motions, [m.to_clip() for m in motions]))
+    torch.testing.assert_close(ours.poses, theirs.poses)
+    torch.testing.assert_close(ours.control, theirs.control)
+    with pytest.raises(ValueError, match="has 60 frames/s; resample it to 20 first"):
+        Windows.of([motions[1].resampled(60)], T_H, T_P)
 
 
 def metres(windows: Windows, batch: int = 400):

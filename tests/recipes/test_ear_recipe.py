@@ -128,7 +128,7 @@ def test_songs_as_mel_are_the_training_songs_and_are_kept():
     made = songs_as_mel(2, 1, 8.0)
     assert songs_as_mel(2, 1, 8.0) is made and made[1][1].shape == (251, 80)
     first, second = training_songs(2, 1, 8.0)
-    wanted = log_mel(torch.from_numpy(second.audio).float())
+    wanted = log_mel(torch.from_numpy(second.audio).float(), 16_000)
     assert torch.equal(made[1][1], wanted) and made[1][0].seed == second.seed != first.seed
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from browser import open_page, player_page, until
-from click_track import clicks, jumping
+from click_track import RATE, clicks, jumping
 from synthetic_walk import walk
 
 from motiondiff_edu.viz.listening import levels_over_sound
@@ -45,7 +45,7 @@ def moved():
 def listening(maps, moved):
     audio = clicks(BEATS, SECONDS)
     heard = Listening(maps, TIMES, moved=moved, hit=1.9)
-    track = Soundtrack(audio, BEATS, BEATS[::4], listening=heard)
+    track = Soundtrack(audio, BEATS, BEATS[::4], listening=heard, sample_rate=RATE)
     return Player(jumping(T, [30]), audio=track, look=Look(autoplay=False))
 
 
@@ -127,13 +127,15 @@ def test_the_record_says_how_the_bytes_are_to_be_read(listening, maps, moved):
 def test_what_is_no_attention_is_explained(wrong, message):
     audio = clicks(BEATS, SECONDS)
     with pytest.raises(ValueError, match=message):
-        track = Soundtrack(wrong.pop("audio", audio), listening=Listening(**wrong))
+        track = Soundtrack(
+            wrong.pop("audio", audio), listening=Listening(**wrong), sample_rate=RATE
+        )
         Player(jumping(T, [30]), audio=track)
 
 
 def test_show_replaces_what_is_given_and_an_error_changes_nothing(maps, moved):
     heard = Listening(maps, TIMES)
-    track = Soundtrack(clicks(BEATS, SECONDS), listening=heard)
+    track = Soundtrack(clicks(BEATS, SECONDS), listening=heard, sample_rate=RATE)
     one = Player(jumping(T, [30]), audio=track)
     before = one.music
     doubled = replace(heard, attention=2 * maps["fine"])
@@ -282,7 +284,7 @@ def test_exported_it_shows_the_same_and_the_poster_has_the_lane(browser, listeni
 
 def test_the_figure_has_map_waveform_and_beats_on_one_axis_of_time(maps):
     audio = clicks(BEATS, SECONDS)
-    fig = levels_over_sound(audio, {"fine": maps["fine"]}, TIMES, BEATS, SECONDS, "words")
+    fig = levels_over_sound(audio, RATE, {"fine": maps["fine"]}, TIMES, BEATS, SECONDS, "words")
     wave, axis = fig.axes[:2]
     (mesh,) = [c for c in axis.collections if c.get_array() is not None]
     np.testing.assert_allclose(np.asarray(mesh.get_array()).reshape(T, 43), maps["fine"])
@@ -296,7 +298,11 @@ def test_the_figure_has_map_waveform_and_beats_on_one_axis_of_time(maps):
 
 
 def test_without_attention_the_lane_has_only_the_waveform(browser, tmp_path):
-    plain = Player(walk(frames=37)[0], audio=clicks([0.5], 1.85), look=Look(autoplay=False))
+    plain = Player(
+        walk(frames=37)[0],
+        audio=Soundtrack(clicks([0.5], 1.85), sample_rate=RATE),
+        look=Look(autoplay=False),
+    )
     with open_page(browser) as page:
         page.goto(player_page(tmp_path, plain))
         assert page.locator(".mde-lane").bounding_box()["height"] < 100

@@ -10,7 +10,7 @@ from PIL import Image
 from synthetic_walk import walk
 
 from motiondiff_edu.motion.skeleton import JOINTS
-from motiondiff_edu.widgets import packing
+from motiondiff_edu.widgets import packing, poster
 from motiondiff_edu.widgets.player import Look, Player
 
 
@@ -217,6 +217,17 @@ def test_a_gif_lasts_as_long_as_the_motion(motion, tmp_path, fps, pictures):
             pauses.append(gif.info["duration"])
     assert len(pauses) == pictures and min(pauses) >= 20
     assert sum(pauses) == pytest.approx(1000 * 24 / fps, abs=5)
+
+
+@pytest.mark.parametrize("save", ["save_gif", "save_mp4"])
+def test_a_place_that_cannot_be_written_is_told_before_a_picture_is_drawn(
+    save, motion, tmp_path, monkeypatch
+):
+    (tmp_path / "walk.html").touch()
+    monkeypatch.setattr(poster, "render", lambda *_, **__: pytest.fail("it draws"))
+    player = Player(motion[0])
+    with pytest.raises(OSError, match="walk.html is a file, not a folder; choose another place"):
+        getattr(player, save)(tmp_path / "walk.html" / f"walk.{save[-3:]}")
 
 
 def test_a_file_that_cannot_be_written_leaves_nothing_behind(motion, tmp_path):

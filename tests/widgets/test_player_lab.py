@@ -7,11 +7,11 @@ from browser import drawn, ink, open_page
 from jupyter_page import ASK, lab, run_all  # noqa: F401
 
 CELL = """import sys; sys.path.insert(0, {tests!r})
-from click_track import clicks
+from click_track import RATE, clicks
 from synthetic_walk import walk
-from motiondiff_edu.widgets.player import Player
+from motiondiff_edu.widgets.player import Player, Soundtrack
 positions, contacts = walk(frames=40)
-sound = clicks([0.5, 1, 1.5], 2)
+sound = Soundtrack(clicks([0.5, 1, 1.5], 2), sample_rate=RATE)
 player = Player(positions, contacts=contacts, past=10, labels="walker", audio=sound)
 player"""
 HEARD = "document.querySelector('.mde-player audio').currentTime"

@@ -6,10 +6,12 @@ import re
 import sys
 import warnings
 import wave
+from pathlib import Path
 
 import numpy as np
 import pytest
 import soundfile
+import torch
 from browser import ANOTHER_FRAME, open_page, player_page, shown
 from click_track import RATE, clicks, jumping
 from synthetic_walk import walk
@@ -24,7 +26,7 @@ JUMPS = [22, 47, 71]  # frames; the clicks are at k/20 s
 @pytest.fixture(scope="module")
 def player():
     audio = clicks(np.array(JUMPS) / 20, 4.6)
-    track = Soundtrack(audio, beats=np.array(JUMPS) / 20)
+    track = Soundtrack(audio, beats=np.array(JUMPS) / 20, sample_rate=RATE)
     return Player(jumping(92, JUMPS), audio=track, look=Look(follow=False))
 
 
@@ -86,7 +88,7 @@ DECODED = """async () => {
 def test_the_browser_decodes_every_click_where_it_was_put(browser, tmp_path, codec):
     audio = clicks(np.array(JUMPS) / 20, 4.6)
     with open_page(browser) as page:
-        coded = Player(jumping(92, JUMPS), audio=Soundtrack(audio, codec=codec))
+        coded = Player(jumping(92, JUMPS), audio=Soundtrack(audio, codec=codec, sample_rate=RATE))
         page.goto(player_page(tmp_path, coded))
         heard = np.array(page.evaluate(DECODED))
     assert abs(len(heard) - len(audio)) < 0.01 * RATE
@@ -174,7 +176,11 @@ def test_speed_keeps_the_pitch_and_mute_is_a_button_and_a_key(browser, player, t
 
 
 def test_without_a_click_it_waits_and_says_so(browser, tmp_path):
-    waiting = Player(walk(frames=43)[0], audio=clicks([1.0], 2.15), look=Look(autoplay=True))
+    waiting = Player(
+        walk(frames=43)[0],
+        audio=Soundtrack(clicks([1.0], 2.15), sample_rate=RATE),
+        look=Look(autoplay=True),
+    )
     with open_page(browser, reduced_motion="no-preference") as page:
         page.goto(player_page(tmp_path, waiting))
         page.get_by_text("browsers start sound only after a click").wait_for()
@@ -193,7 +199,7 @@ def test_before_a_room_it_moves_without_a_click_and_is_heard_after_one(
     browser, tmp_path, monkeypatch
 ):
     monkeypatch.setattr(style, "PROJECTED", True)
-    moving = Player(walk(frames=43)[0], audio=clicks([1.0], 2.15))
+    moving = Player(walk(frames=43)[0], audio=Soundtrack(clicks([1.0], 2.15), sample_rate=RATE))
     with open_page(browser, reduced_motion="no-preference") as page:
         page.goto(player_page(tmp_path, moving))
         page.wait_for_function("document.querySelector('.mde-player').dataset.frame > 5")
@@ -289,7 +295,7 @@ def test_exported_html_sounds_in_its_sandbox_offline(browser, player, tmp_path):
 
 
 def test_where_the_sound_cannot_be_played_the_figure_still_moves(browser, player, tmp_path):
-    broken = Player(walk(frames=43)[0], audio=clicks([1.0], 2.15))
+    broken = Player(walk(frames=43)[0], audio=Soundtrack(clicks([1.0], 2.15), sample_rate=RATE))
     broken.sound = b"OggS, or so it says"
     with open_page(browser) as page:
         page.goto(player_page(tmp_path, broken))
@@ -300,7 +306,7 @@ def test_where_the_sound_cannot_be_played_the_figure_still_moves(browser, player
 
 
 def test_another_dance_brings_its_sound_and_none_takes_it_away(browser, player, tmp_path):
-    other = Player(walk(frames=31)[0], audio=clicks([0.5], 1.55))
+    other = Player(walk(frames=31)[0], audio=Soundtrack(clicks([0.5], 1.55), sample_rate=RATE))
     with open_page(browser) as page:
         page.goto(player_page(tmp_path, player))
         first = page.evaluate("document.querySelector('audio').src")
@@ -346,7 +352,11 @@ def test_the_record_holds_times_and_a_waveform(player):
 
 def test_before_a_room_the_buttons_are_seen_below_the_figure(browser, tmp_path, monkeypatch):
     monkeypatch.setattr(style, "PROJECTED", True)
-    tall = Player(walk(frames=43)[0], audio=clicks([1.0], 2.15), look=Look(height=900))
+    tall = Player(
+        walk(frames=43)[0],
+        audio=Soundtrack(clicks([1.0], 2.15), sample_rate=RATE),
+        look=Look(height=900),
+    )
     with open_page(browser) as page:
         page.set_viewport_size({"width": 1060, "height": 720})
         page.goto(player_page(tmp_path, tall))
@@ -357,7 +367,7 @@ def test_before_a_room_the_buttons_are_seen_below_the_figure(browser, tmp_path, 
 
 def test_before_a_room_only_what_has_a_sound_is_muted(monkeypatch):
     monkeypatch.setattr(style, "PROJECTED", True)
-    motion, sounds = walk(frames=37)[0], clicks([0.5], 1.85)
+    motion, sounds = walk(frames=37)[0], Soundtrack(clicks([0.5], 1.85), sample_rate=RATE)
     silent, sounding = Player(motion).scene, Player(motion, audio=sounds).scene
     waiting = Player(motion, audio=sounds, look=Look(autoplay=False)).scene
     assert (silent["autoplay"], silent["muted"]) == (True, False)
@@ -367,7 +377,8 @@ def test_before_a_room_only_what_has_a_sound_is_muted(monkeypatch):
 
 def test_ten_seconds_are_a_small_page():
     noisy = np.random.default_rng(0).normal(0, 0.1, 10 * RATE) + clicks(np.arange(0.5, 10, 0.5), 10)
-    silent, sounding = (Player(walk(frames=200)[0], audio=audio) for audio in (None, noisy))
+    track = Soundtrack(noisy, sample_rate=RATE)
+    silent, sounding = (Player(walk(frames=200)[0], audio=audio) for audio in (None, track))
     assert len(sounding.page()) - len(silent.page()) < 90_000
 
 
@@ -376,18 +387,18 @@ def test_a_sound_is_cut_or_filled_up_to_the_motion_and_that_is_said():
     with pytest.warns(
         UserWarning, match="the sound lasts 1.00 s, the motion 1.85 s: the last 0.85 s are silent"
     ):
-        Player(motion, audio=Soundtrack(clicks([0.5], 1.0), codec="wav"))
+        Player(motion, audio=Soundtrack(clicks([0.5], 1.0), codec="wav", sample_rate=RATE))
     with pytest.warns(
         UserWarning, match="the sound lasts 3.00 s, the motion 1.85 s: the rest is cut off"
     ):
-        track = Soundtrack(clicks([0.5], 3.0), beats=[0.5, 2.5], codec="wav")
+        track = Soundtrack(clicks([0.5], 3.0), beats=[0.5, 2.5], codec="wav", sample_rate=RATE)
         player = Player(motion, audio=track)
     with wave.open(io.BytesIO(player.sound)) as file:
         assert file.getnframes() == round(1.85 * RATE)
     assert player.music["beats"] == [0.5]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        Player(motion, audio=clicks([0.5], 1.87))
+        Player(motion, audio=Soundtrack(clicks([0.5], 1.87), sample_rate=RATE))
 
 
 @pytest.mark.parametrize(
@@ -397,12 +408,33 @@ def test_a_sound_is_cut_or_filled_up_to_the_motion_and_that_is_said():
         (np.zeros(0), "audio has no samples"),
         (np.zeros(500, np.int16), "audio is int16; pass floats"),
         (np.array([0, np.nan, np.nan, 0]), r"not finite at sample 1 \(0.00 s\); 2 samples in all"),
+    ],
+)
+def test_samples_that_are_no_sound_are_explained(audio, message):
+    with pytest.raises(ValueError, match=message):
+        Player(walk(frames=37)[0], audio=Soundtrack(audio, sample_rate=RATE))
+
+
+@pytest.mark.parametrize(
+    "audio, message",
+    [
         (b"no sound at all", "these 15 bytes are not a WAV, FLAC, Ogg or MP3 file"),
+        (
+            np.zeros(500),
+            r"the samples need their rate, in Hz: pass Soundtrack\(audio, sample_rate=",
+        ),
+        (torch.zeros(500), "the samples need their rate"),
+        ("song.ogg", r"name of a file, or an open file: pass its bytes, Path\(name\).read_bytes"),
+        (Path("song.ogg"), "name of a file, or an open file"),
+        (io.BytesIO(b"RIFF"), "name of a file, or an open file"),
     ],
 )
 def test_sounds_that_are_none_are_explained(audio, message):
     with pytest.raises(ValueError, match=message):
-        Player(walk(frames=37)[0], audio=audio)
+        sound.as_sound(audio)
+    if not isinstance(audio, Path | io.BytesIO):  # types that the annotations refuse
+        with pytest.raises(ValueError, match=message):
+            Player(walk(frames=37)[0], audio=audio)
 
 
 def test_other_wrong_arguments_are_explained_and_leave_the_player_as_it_was():
@@ -418,13 +450,13 @@ def test_other_wrong_arguments_are_explained_and_leave_the_player_as_it_was():
         (dict(beats=[0.5, np.nan]), "`beats` must be increasing times"),
     ]:
         with pytest.raises(ValueError, match=message):
-            Player(motion, audio=Soundtrack(audio, **wrong))
+            Player(motion, audio=Soundtrack(audio, **{"sample_rate": RATE} | wrong))
     with pytest.raises(ValueError, match="pass `audio` too"):
         Player(motion, audio=Soundtrack(None, beats=[0.5]))
-    player = Player(motion, audio=audio)
+    player = Player(motion, audio=Soundtrack(audio, sample_rate=RATE))
     before = player.scene, player.sound
     with pytest.raises(ValueError, match="no samples"):
-        player.show(motion[:9], audio=np.zeros(0))
+        player.show(motion[:9], audio=Soundtrack(np.zeros(0), sample_rate=RATE))
     assert (player.scene, player.sound) == before and player.poster().width == 960
 
 
@@ -490,7 +522,7 @@ def test_a_long_sound_can_be_written():
 
 def test_an_mp4_has_the_sound(tmp_path):
     imageio_ffmpeg = pytest.importorskip("imageio_ffmpeg")
-    player = Player(walk(frames=11)[0], audio=clicks([0.25], 0.55))
+    player = Player(walk(frames=11)[0], audio=Soundtrack(clicks([0.25], 0.55), sample_rate=RATE))
     told = next(imageio_ffmpeg.read_frames(str(player.save_mp4(tmp_path / "walk.mp4", (64, 64)))))
     assert told["audio_codec"] == "aac" and told["duration"] == pytest.approx(0.55, abs=0.06)
     assert not [path for path in tmp_path.iterdir() if path.name != "walk.mp4"]

@@ -13,6 +13,7 @@ import torch
 from jaxtyping import Float
 from matplotlib.figure import Figure as Picture
 
+from motiondiff_edu.conditions.music import SAMPLE_RATE
 from motiondiff_edu.performers.attention_on_beats import (
     attention_maps,
     beat_mass,
@@ -146,5 +147,6 @@ def attention_picture(stage: Stage, song: int = 0, frames: int = TRAINED) -> Pic
         "an upright stripe is read by all moments."
     )
     return levels_over_sound(
-        audio[: round(seconds * 16_000)], shown, times, songs.songs[song].beats, seconds, words
-    )
+        audio[: round(seconds * SAMPLE_RATE)], SAMPLE_RATE, shown, times,
+        songs.songs[song].beats, seconds, words,
+    )  # fmt: skip

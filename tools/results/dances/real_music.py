@@ -95,7 +95,7 @@ def recording(path: Path, folder: Path) -> Recording:
     """
     audio = read_audio(path).numpy()
     written = sorted((folder / BEATS).glob(f"{path.stem}.*beats"))
-    beats = np.loadtxt(written[0], ndmin=1) if written else beats_of(audio)
+    beats = np.loadtxt(written[0], ndmin=1) if written else beats_of(audio, SAMPLE_RATE)
     return Recording(path.stem, audio, beats, bool(written))
 
 
@@ -131,7 +131,7 @@ def song_rows(dancer: Dancer, song: Recording, size: MusicSize) -> Float[np.ndar
     """`gains_of` of all dances to all parts of one recording."""
     rows = [np.empty((0, 2))]
     for sound, beats in song.parts(size.parts):
-        mel = log_mel(torch.from_numpy(sound).float()).expand(size.samples, -1, -1)
+        mel = log_mel(torch.from_numpy(sound).float(), SAMPLE_RATE).expand(size.samples, -1, -1)
         frames = int(len(sound) / SAMPLE_RATE * FPS)
         rows.append(gains_of(dances_of(dancer, mel, frames, seed=0), beats))
     return np.concatenate(rows)

@@ -38,7 +38,7 @@ Hear = Callable[[Song], Float[torch.Tensor, "M C"]]  # what a network is given o
 
 def mel_of(song: Song) -> Float[torch.Tensor, "M 80"]:
     """The log-Mel spectrogram: all that the dancers hear."""
-    return log_mel(torch.from_numpy(song.audio).float())
+    return log_mel(torch.from_numpy(song.audio).float(), song.sample_rate)
 
 
 @dataclass(frozen=True, eq=False)
