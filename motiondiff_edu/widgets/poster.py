@@ -242,18 +242,16 @@ def film(
     Each figure has a field of `size` with its label.
     """
     frames = range(0, max(map(len, figures)), every)
-    with bar(len(frames), "drawing") as step:
-        for t in frames:
-            picture = Image.new("RGB", (size[0] * len(figures), size[1]), body.PAPER)
-            pen = ImageDraw.Draw(picture)
-            for i, figure in enumerate(figures):
-                picture.paste(render(figure, t, size, fps=fps), (i * size[0], 0))
-                words = " · ".join(w for w in (figure.label, figure.tense(t)) if w)
-                _write(pen, (i * size[0] + 10, 8), words, 18)
-            _write(pen, (10, size[1] - 28), f"{t / fps:.1f} s", 18)
-            _legend(pen, picture.width - 10, size[1] - 28, 18)
-            yield picture
-            step()
+    for t in bar("drawing", len(frames))(frames):
+        picture = Image.new("RGB", (size[0] * len(figures), size[1]), body.PAPER)
+        pen = ImageDraw.Draw(picture)
+        for i, figure in enumerate(figures):
+            picture.paste(render(figure, t, size, fps=fps), (i * size[0], 0))
+            words = " · ".join(w for w in (figure.label, figure.tense(t)) if w)
+            _write(pen, (i * size[0] + 10, 8), words, 18)
+        _write(pen, (10, size[1] - 28), f"{t / fps:.1f} s", 18)
+        _legend(pen, picture.width - 10, size[1] - 28, 18)
+        yield picture
 
 
 def film_palette(figures: list[Figure], size: tuple[int, int]) -> Image.Image:
