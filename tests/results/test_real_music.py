@@ -81,7 +81,7 @@ def folder(tmp_path, monkeypatch):
     The tracker, which is slow to compile, finds a beat every half second.
     """
     monkeypatch.setattr(
-        real_music, "beats_of", lambda audio: np.arange(0, len(audio) / 16_000, 0.5)
+        real_music, "beats_of", lambda audio, rate: np.arange(0, len(audio) / 16_000, 0.5)
     )
     (tmp_path / "audio").mkdir()
     (tmp_path / "audio_beats_machine").mkdir()
