@@ -21,24 +21,24 @@ from jaxtyping import Bool, Float
 from torch import Tensor
 
 from .guidance import blended_guess
-from .turning_frame import View, path_turned, speeds_for_path
+from .turning_frame import TurningFrame, path_turned, speeds_for_path
 
 HALF = 3.0  # frames at 20 frames/s; with it, scales are those of walks, dances and recordings
 
 
 @dataclass(frozen=True, eq=False)
-class Shown:
-    """What the network is shown beside x_s and s: lines, scale, and which entries are given.
+class GivenLines:
+    """What the network is shown beside r_s and s: lines, scale, and which entries are given.
 
     `less` makes a remainder smaller than the scale that the network sees says (`activity`).
-    `view`: the headings in which poses are seen, and remainders of the path generated
+    `frame`: the headings in which poses are seen, and remainders of the path generated
     (`turning_frame`); without one, they are seen in the frame of the first pose.
     """
 
     lines: Float[Tensor, "B T D"]
     scale: Float[Tensor, "B T D"]
     known: Bool[Tensor, "B T D"]
-    view: View | None = None
+    frame: TurningFrame | None = None
     less: Float[Tensor, "B T D"] | float = 1.0
 
     @classmethod
@@ -46,24 +46,25 @@ class Shown:
         cls,
         given: Float[Tensor, "B T D"],
         known: Bool[Tensor, "B T D"],
-        view: View | None = None,
-    ) -> "Shown":
+        frame: TurningFrame | None = None,
+    ) -> "GivenLines":
         """The lines through the given entries; unknown entries of `given` can be anything."""
-        return cls(lines_through(given, known), scale_around(known), known, view)
+        return cls(lines_through(given, known), scale_around(known), known, frame)
 
-    def speeds(self, view: View) -> Float[Tensor, "B T D_plus_6"]:
+    def speeds(self) -> Float[Tensor, "B T D_plus_6"]:
         """The lines, with speeds instead of the place on the path, and the toes' steps."""
-        return torch.cat([speeds_for_path(self.lines, view.turned), view.steps], -1)
+        frame = self.frame or TurningFrame.none(self.lines)
+        return torch.cat([speeds_for_path(self.lines, frame.turned), frame.steps], -1)
 
     def remainder(self, x0: Float[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:
         """What the network generates for a motion; 0 where the motion is given."""
         left = ((x0 - self.lines) / (self.less * self.scale)).where(~self.known, 0.0)
-        return path_turned(left, self.view.turned) if self.view else left
+        return path_turned(left, self.frame.turned) if self.frame else left
 
     def whole(self, remainder: Float[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:
         """The motion with this remainder; given entries come back up to rounding."""
-        if self.view:
-            remainder = path_turned(remainder, -self.view.turned)
+        if self.frame:
+            remainder = path_turned(remainder, -self.frame.turned)
         return self.lines + self.less * self.scale * remainder
 
 

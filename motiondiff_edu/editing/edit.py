@@ -149,7 +149,8 @@ class Made:
 
 @runtime_checkable
 class Make(Protocol):
-    """A function that generates the rest of an edit: `editing.inbetween.maker(dancer)` is one.
+    """A function that generates the rest of an edit, such as `editing.inbetween.inbetween` with its
+    in-betweener: `functools.partial(inbetween, md.load("inbetweener"))`.
 
     It returns `samples` motions (metres). `resample` is how often each step is repeated.
     """

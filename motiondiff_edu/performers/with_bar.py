@@ -38,7 +38,4 @@ def with_bar(
             if hasattr(performer, name):
                 # the record is frozen; its twin lives as long as the bar
                 vars(twin)[name] = with_steps(getattr(performer, name))
-        if hasattr(performer, "shown_denoiser"):
-            make_shown = performer.shown_denoiser
-            vars(twin)["shown_denoiser"] = lambda shown: stepping(make_shown(shown))
         yield twin
