@@ -20,7 +20,7 @@ import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
-from .guidance import blended_guess
+from ..motion.known import between_known
 from .turning_frame import TurningFrame, path_turned, speeds_for_path
 
 HALF = 3.0  # frames at 20 frames/s; with it, scales are those of walks, dances and recordings
@@ -49,7 +49,7 @@ class GivenLines:
         frame: TurningFrame | None = None,
     ) -> "GivenLines":
         """The lines through the given entries; unknown entries of `given` can be anything."""
-        return cls(lines_through(given, known), scale_around(known), known, frame)
+        return cls(between_known(given, known), scale_around(known), known, frame)
 
     def speeds(self) -> Float[Tensor, "B T D_plus_6"]:
         """The lines, with speeds instead of the place on the path, and the toes' steps."""
@@ -66,18 +66,6 @@ class GivenLines:
         if self.frame:
             remainder = path_turned(remainder, -self.frame.turned)
         return self.lines + self.less * self.scale * remainder
-
-
-def lines_through(
-    given: Float[Tensor, "B T D"], known: Bool[Tensor, "B T D"]
-) -> Float[Tensor, "B T D"]:
-    """Straight lines from each given entry of a column to the next.
-
-    Before the first and after the last one its value stays. A column without a given entry is 0,
-    the mean of standardised features.
-    """
-    given = given.where(known, 0.0)
-    return blended_guess(torch.zeros_like(given), given, known, fade=math.inf)
 
 
 def scale_around(known: Bool[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:

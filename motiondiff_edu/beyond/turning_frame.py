@@ -22,8 +22,8 @@ from torch import Tensor
 
 from ..motion.dance_frame import PATH, headings_between
 from ..motion.directions import ARMS, UPLEGS
+from ..motion.known import between_known
 from ..motion.skeleton import TOES, J
-from .guidance import blended_guess
 
 SPAN = 5  # frames before and after, over which the speed of a line is taken
 STEP = 0.3  # m: a step of so much in 2 SPAN frames counts as 1
@@ -94,9 +94,8 @@ def steps_of(
     pelvis, found = features[..., :3], []
     for toe in TOES:
         given = known[..., toe, None].expand(-1, -1, 3)
-        place = (features[..., 3 * toe : 3 * toe + 3] + pelvis).where(given, 0.0)
-        lines = blended_guess(torch.zeros_like(place), place, given, fade=torch.inf)
-        x, y, z = (changes_around(lines) / STEP).unbind(-1)
+        place = features[..., 3 * toe : 3 * toe + 3] + pelvis
+        x, y, z = (changes_around(between_known(place, given)) / STEP).unbind(-1)
         across, along = _rotated(x, z, turned)
         found += [across, y, along]
     return torch.stack(found, -1)

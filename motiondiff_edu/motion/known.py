@@ -6,6 +6,8 @@ given, too. It sees the motion from its first known pose, wherever that is in th
 Source: MoFusion 4.4 (the mask delta).  Notebook: 15
 """
 
+import math
+
 import numpy as np
 import torch
 from jaxtyping import Bool, Float
@@ -16,6 +18,7 @@ from .directions import ARMS, UPLEGS
 from .motion import Motion, MotionError
 from .skeleton import COURSE, HIPS, JOINTS, J
 
+Fade = float | Float[Tensor, "D"]  # frames
 AHEAD, SOMEWHERE = 20, 0.5  # frames of the path that tell where it leads, if so far (metres)
 
 
@@ -130,3 +133,27 @@ def with_given(
     """Generated features (metres), back in the world. What is known stays as given, bit by bit."""
     made = place.leave(to_positions(features).double().cpu().numpy())
     return np.where(known[..., None], positions, made)
+
+
+def between_known(
+    values: Float[Tensor, "B T D"], known: Bool[Tensor, "B T D"], fade: Fade = math.inf
+) -> Float[Tensor, "B T D"]:
+    """Straight lines from each known entry of a column to the next; unknown values can be anything.
+
+    Before the first and after the last known entry they fade to zero within `fade` frames: one
+    number, or one for each column; with infinity they stay. A column without a known entry is 0.
+    """
+    T = values.shape[1]
+    frames = torch.arange(T, device=values.device).view(1, T, 1).expand(known.shape)
+    # the last known frame up to each frame, -1 for none; the next from each frame on, T for none
+    before = torch.where(known, frames, -1).cummax(1).values
+    after = torch.where(known, frames, T).flip(1).cummin(1).values.flip(1)
+    values = values.where(known, 0.0)
+    behind = values.gather(1, before.clamp(min=0))
+    ahead = values.gather(1, after.clamp(max=T - 1))
+    share = (frames - before) / (after - before).clamp(min=1)
+    away = torch.where(before < 0, after - frames, frames - before)
+    alone, nothing = (1 - away / (fade + 1)).clamp(min=0), torch.zeros_like(share)
+    behind = behind * torch.where(after < T, 1 - share, alone).where(before >= 0, nothing)
+    ahead = ahead * torch.where(before >= 0, share, alone).where(after < T, nothing)
+    return torch.where(known, values, behind + ahead)

@@ -6,7 +6,7 @@ import torch
 from two_numbers import correlated
 
 from data_synth.mixed import motions
-from motiondiff_edu.beyond.around_lines import HALF, GivenLines, lines_through
+from motiondiff_edu.beyond.around_lines import HALF, GivenLines
 from motiondiff_edu.ddpm import cosine_schedule, final
 from motiondiff_edu.exact import conditional, exact_denoiser, mixture
 from motiondiff_edu.inbetweening import inpaint_steps
@@ -18,16 +18,6 @@ SCHEDULE = cosine_schedule(100)
 
 def seeded(seed: int = 0) -> torch.Generator:
     return torch.Generator().manual_seed(seed)
-
-
-def test_lines_go_from_each_given_entry_to_the_next_and_stay_outside():
-    given = torch.full((1, 7, 3), float("nan"))
-    given[0, 1, 0], given[0, 5, 0] = 2.0, 4.0
-    given[0, 3, 1] = -1.0
-    lines = lines_through(given, ~given.isnan())[0]
-    torch.testing.assert_close(lines[:, 0], torch.tensor([2, 2, 2.5, 3, 3.5, 4, 4]))
-    torch.testing.assert_close(lines[:, 1], torch.full((7,), -1.0))
-    assert torch.equal(lines[:, 2], torch.zeros(7))
 
 
 def test_the_scale_is_nothing_where_a_motion_is_given_and_grows_with_the_distance():

@@ -122,6 +122,14 @@ def test_the_guesses_of_a_dancer_that_predicts_noise_are_held_within_what_dances
     assert features[..., 3:].abs().max() < 1.01 * FARTHEST
 
 
+def test_other_music_gets_another_dance():
+    songs = (torch.randn(64, 5, generator=seeded(k)) for k in (9, 10))
+    one, other = (
+        inpaint(dancer(5), clip(), seed(40, 10), mel, steps=3, generator=seeded()) for mel in songs
+    )
+    assert np.abs(one - other).max() > 1e-4
+
+
 def test_a_dancer_of_another_kind_is_refused():
     with pytest.raises(ValueError, match="dances to music"):
         inpaint(dancer(5), clip(), seed(40, 10))

@@ -9,6 +9,7 @@ from data_synth.walking import random_control, walk
 from motiondiff_edu.editing.masks import PARTS, body_part, keyframes, seed
 from motiondiff_edu.motion.dance_frame import Place, facing
 from motiondiff_edu.motion.known import (
+    between_known,
     checked_given,
     first_place,
     given_features,
@@ -81,3 +82,18 @@ def test_features_are_the_same_wherever_the_motion_stands_and_they_lead_back(kno
     assert np.array_equal(moved[0][known], here[known])
     freely = with_given(place, features[None], holes, known & False)
     np.testing.assert_allclose(freely[0][known], here[known], atol=1e-5)
+
+
+def test_lines_go_from_each_known_entry_to_the_next_and_stay_or_fade_outside():
+    given = torch.full((1, 7, 3), float("nan"))
+    given[0, 1, 0], given[0, 5, 0] = 2.0, 4.0
+    given[0, 3, 1] = -1.0
+    lines = between_known(given, ~given.isnan())[0]
+    torch.testing.assert_close(lines[:, 0], torch.tensor([2, 2, 2.5, 3, 3.5, 4, 4]))
+    torch.testing.assert_close(lines[:, 1], torch.full((7,), -1.0))
+    assert torch.equal(lines[:, 2], torch.zeros(7))
+    fade = torch.tensor([1.0, 2.0, 3.0])
+    faded = between_known(given, ~given.isnan(), fade)[0]
+    torch.testing.assert_close(faded[:, 0], torch.tensor([1, 2, 2.5, 3, 3.5, 4, 2]))
+    thirds = torch.tensor([0, 1 / 3, 2 / 3, 1, 2 / 3, 1 / 3, 0])
+    torch.testing.assert_close(faded[:, 1], -thirds)

@@ -84,6 +84,23 @@ def test_known_entries_come_back_bit_by_bit_and_the_rest_is_made(known, turning)
     ), "without a generator the seed is 0"
 
 
+def test_the_remainder_is_held_at_nothing_where_a_motion_is_known(monkeypatch):
+    """The network sees noise alone there: noised snapshots of a remainder of 0."""
+    known, seen = keyframes(T, 7), []
+    inpaint = module.inpaint_steps
+
+    def watched(denoise, r_S, schedule, given, columns, **how):
+        seen.append((given, columns))
+        return inpaint(denoise, r_S, schedule, given, columns, **how)
+
+    monkeypatch.setattr(module, "inpaint_steps", watched)
+    small_inbetweener().fill(WALKED, known, samples=2, steps=2)
+    ((given, columns),) = seen
+    assert given.shape == (2, T, 63) and not given.any()
+    wanted = torch.from_numpy(known).repeat_interleave(3, -1).expand(2, T, 63)
+    assert torch.equal(columns, wanted)
+
+
 def test_if_nothing_is_known_it_is_a_plain_sample():
     filler, nothing = small_inbetweener(), np.zeros((T, 21), bool)
     made = filler.fill(
