@@ -15,8 +15,10 @@ import motiondiff_edu as md
 from data_synth.music import compose
 from data_synth.walking import walk
 from motiondiff_edu.editing.masks import body_part
+from motiondiff_edu.editing.plausible import CALMER, DRAWS
 from motiondiff_edu.motion.motion import MotionError, MotionWarning
 from motiondiff_edu.motion.skeleton import HIPS, TOES, Skeleton, joint_index
+from motiondiff_edu.performers.inbetweener import Inbetweener
 from motiondiff_edu.pretrained import shipped
 from motiondiff_edu.widgets import motions as shown
 from motiondiff_edu.widgets.player import Player
@@ -236,6 +238,10 @@ def test_a_performer_says_which_other_one_can():
         md.load("walker").dance("song.ogg")
     with pytest.raises(AttributeError, match="a dancer cannot walk; md.load..walker.. can"):
         md.load("dancer").walk(None, None)
+    with pytest.raises(AttributeError, match="an inbetweener cannot dance; md.load..dancer.. can"):
+        md.load("inbetweener").dance("song.ogg")
+    with pytest.raises(AttributeError, match="a walker cannot fill; md.load..inbetweener.. can"):
+        md.load("walker").fill(None, None)
     with pytest.raises(AttributeError, match="'Dancer' object has no attribute 'sing'"):
         md.load("dancer").sing()
 
@@ -249,19 +255,23 @@ def test_motions_of_one_name_are_numbered(walked):
 @pytest.mark.parametrize(
     "better, said", [(True, "So it was generated again"), (False, "no better")]
 )
-def test_in_betweens_that_jump_are_made_again_without_guidance(better, said, walked, monkeypatch):
-    """The network is replaced by one that leaves the way, with guidance or always."""
+def test_in_betweens_that_jump_are_made_again(better, said, walked, monkeypatch):
+    """The network is replaced by one that leaves the way, at first or always."""
+    drawn = []
 
-    def astray(dancer, positions, known, *, samples, departures, **_):
+    def astray(inbetweener, positions, known, *, samples, **_):
         made = np.stack([positions] * samples)
-        if departures.guidance or not better:
+        if not (better and drawn):
             made[:, 30:35] += 2.0
+        drawn.append(inbetweener.card["name"])
         return made
 
-    monkeypatch.setattr(shipped.inbetweens, "inbetween", astray)
+    monkeypatch.setattr(Inbetweener, "fill", astray)
+    monkeypatch.setattr(shipped, "finished", lambda made, *_: made)
     with pytest.warns(MotionWarning, match=f"between frames 20 and 40, where 1.* m/s.*{said}"):
         made = md.inbetween(walked, md.keyframes(walked), progress=False)
     assert np.array_equal(made.positions, walked.positions) == better
+    assert set(drawn) == {"inbetweener"} and len(drawn) == (2 if better else DRAWS + len(CALMER))
 
 
 @pytest.mark.parametrize(

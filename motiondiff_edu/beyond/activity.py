@@ -25,7 +25,7 @@ from torch import Tensor
 from torch.nn.functional import conv1d
 
 from ..motion.dance_frame import PATH
-from .around_lines import Shown, frames_since
+from .around_lines import GivenLines, frames_since
 
 SPAN = 20  # frames, a second; with 10, sizes of motions differ a little more
 BLUR = 10.0  # frames, standard deviation of the average; with 20, sizes of single gaps differ more
@@ -33,14 +33,14 @@ USUAL = 0.001  # weight of activity 1 beside what is given; a motionless figure 
 USED_AT_MOST = 1.0  # in use: lively people of recordings would be moved too far
 
 
-def with_activity(shown: Shown, at_most: float = math.inf) -> Shown:
+def with_activity(plain: GivenLines, at_most: float = math.inf) -> GivenLines:
     """The same lines, with a scale that is multiplied by the activity.
 
     With more activity than `at_most`, the network sees what it has seen in training, and its
     remainders count less, as if the activity were `at_most`.
     """
-    lively = activity(shown.lines, shown.known)
-    return replace(shown, scale=shown.scale * lively, less=(at_most / lively).clamp(max=1.0))
+    lively = activity(plain.lines, plain.known)
+    return replace(plain, scale=plain.scale * lively, less=(at_most / lively).clamp(max=1.0))
 
 
 def activity(lines: Float[Tensor, "B T D"], known: Bool[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:

@@ -20,25 +20,25 @@ import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
-from .guidance import blended_guess
-from .turning_frame import View, path_turned, speeds_for_path
+from ..motion.known import between_known
+from .turning_frame import TurningFrame, path_turned, speeds_for_path
 
 HALF = 3.0  # frames at 20 frames/s; with it, scales are those of walks, dances and recordings
 
 
 @dataclass(frozen=True, eq=False)
-class Shown:
-    """What the network is shown beside x_s and s: lines, scale, and which entries are given.
+class GivenLines:
+    """What the network is shown beside r_s and s: lines, scale, and which entries are given.
 
     `less` makes a remainder smaller than the scale that the network sees says (`activity`).
-    `view`: the headings in which poses are seen, and remainders of the path generated
+    `frame`: the headings in which poses are seen, and remainders of the path generated
     (`turning_frame`); without one, they are seen in the frame of the first pose.
     """
 
     lines: Float[Tensor, "B T D"]
     scale: Float[Tensor, "B T D"]
     known: Bool[Tensor, "B T D"]
-    view: View | None = None
+    frame: TurningFrame | None = None
     less: Float[Tensor, "B T D"] | float = 1.0
 
     @classmethod
@@ -46,37 +46,26 @@ class Shown:
         cls,
         given: Float[Tensor, "B T D"],
         known: Bool[Tensor, "B T D"],
-        view: View | None = None,
-    ) -> "Shown":
+        frame: TurningFrame | None = None,
+    ) -> "GivenLines":
         """The lines through the given entries; unknown entries of `given` can be anything."""
-        return cls(lines_through(given, known), scale_around(known), known, view)
+        return cls(between_known(given, known), scale_around(known), known, frame)
 
-    def speeds(self, view: View) -> Float[Tensor, "B T D_plus_6"]:
+    def speeds(self) -> Float[Tensor, "B T D_plus_6"]:
         """The lines, with speeds instead of the place on the path, and the toes' steps."""
-        return torch.cat([speeds_for_path(self.lines, view.turned), view.steps], -1)
+        frame = self.frame or TurningFrame.none(self.lines)
+        return torch.cat([speeds_for_path(self.lines, frame.turned), frame.steps], -1)
 
     def remainder(self, x0: Float[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:
         """What the network generates for a motion; 0 where the motion is given."""
         left = ((x0 - self.lines) / (self.less * self.scale)).where(~self.known, 0.0)
-        return path_turned(left, self.view.turned) if self.view else left
+        return path_turned(left, self.frame.turned) if self.frame else left
 
     def whole(self, remainder: Float[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:
         """The motion with this remainder; given entries come back up to rounding."""
-        if self.view:
-            remainder = path_turned(remainder, -self.view.turned)
+        if self.frame:
+            remainder = path_turned(remainder, -self.frame.turned)
         return self.lines + self.less * self.scale * remainder
-
-
-def lines_through(
-    given: Float[Tensor, "B T D"], known: Bool[Tensor, "B T D"]
-) -> Float[Tensor, "B T D"]:
-    """Straight lines from each given entry of a column to the next.
-
-    Before the first and after the last one its value stays. A column without a given entry is 0,
-    the mean of standardised features.
-    """
-    given = given.where(known, 0.0)
-    return blended_guess(torch.zeros_like(given), given, known, fade=math.inf)
 
 
 def scale_around(known: Bool[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:

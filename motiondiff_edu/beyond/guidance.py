@@ -18,11 +18,11 @@ from jaxtyping import Bool, Float
 from torch import Tensor
 
 from ..ddpm import Denoiser, Schedule
+from ..motion.known import Fade, between_known
 from ..prediction import eps_from_x0, x0_from_eps
 
 X = Float[Tensor, "B *shape"]
 Mask = Bool[Tensor, "B *shape"]
-Fade = float | Float[Tensor, "D"]  # frames
 
 
 def guided(
@@ -116,25 +116,7 @@ def blended_guess(
 ) -> Float[Tensor, "B T D"]:
     """x0_hat, corrected so that it goes through the given entries.
 
-    The correction at the given frames is interpolated to the frames between them. Before the first
-    and after the last given frame it fades to zero within `fade` frames: one number, or one for
-    each column; with infinity it does not fade.
+    The correction at the given frames is interpolated to the frames between them, and fades before
+    the first and after the last (`motion.known.between_known`).
     """
-    T = x0_hat.shape[1]
-    frames = torch.arange(T, device=x0_hat.device).view(1, T, 1).expand(known.shape)
-    before = (
-        torch.where(known, frames, -1).cummax(1).values
-    )  # the last known frame up to each frame, -1 for none
-    after = (
-        torch.where(known, frames, T).flip(1).cummin(1).values.flip(1)
-    )  # the next known frame from each frame on, T for none
-    errors = (given - x0_hat).where(known, 0.0)
-    behind = errors.gather(1, before.clamp(min=0))
-    ahead = errors.gather(1, after.clamp(max=T - 1))
-    share = (frames - before) / (after - before).clamp(min=1)
-    alone = (1 - torch.where(before < 0, after - frames, frames - before) / (fade + 1)).clamp(min=0)
-    behind = behind * torch.where(after < T, 1 - share, alone).where(
-        before >= 0, torch.zeros_like(share)
-    )
-    ahead = ahead * torch.where(before >= 0, share, alone).where(after < T, torch.zeros_like(share))
-    return torch.where(known, given, x0_hat + behind + ahead)
+    return torch.where(known, given, x0_hat + between_known(given - x0_hat, known, fade))

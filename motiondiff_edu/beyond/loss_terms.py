@@ -6,7 +6,7 @@ of the error or of its differences, and the error times sqrt(w) has a square wit
 `weighted_by_step` can wrap any loss. `weighted` has a limit: a difference must be of two errors of
 one weight. Weights of frames suit the squared error and `bones`, those of columns the squared error
 and `changes`. Otherwise an error that both ends share counts as well, which is right only where the
-weights convert units (`recipes.keyframe_loss`).
+weights convert units (`recipes.inbetweener`).
 
     in_metres = weighted(squared_error, metre_weights(std))
     loss = weighted(total(in_metres, bones(2, std)), near_weights(change))

@@ -22,39 +22,39 @@ from torch import Tensor
 
 from ..motion.dance_frame import PATH, headings_between
 from ..motion.directions import ARMS, UPLEGS
+from ..motion.known import between_known
 from ..motion.skeleton import TOES, J
-from .guidance import blended_guess
 
 SPAN = 5  # frames before and after, over which the speed of a line is taken
 STEP = 0.3  # m: a step of so much in 2 SPAN frames counts as 1
 
 
 @dataclass(frozen=True, eq=False)
-class View:
+class TurningFrame:
     """What the given poses tell of a figure: its headings (radians), and its toes' steps."""
 
     turned: Float[Tensor, "B T"]
     steps: Float[Tensor, "B T 6"]
 
     @classmethod
-    def of(cls, features: Float[Tensor, "B T 63"], known: Bool[Tensor, "B T 21"]) -> "View":
+    def of(cls, features: Float[Tensor, "B T 63"], known: Bool[Tensor, "B T 21"]) -> "TurningFrame":
         """From features in metres (`motion.dance_frame`); unknown entries can be anything."""
         turned = headings(features, known)
         return cls(turned, steps_of(features, known, turned))
 
     @classmethod
-    def none(cls, features: Float[Tensor, "B T D"]) -> "View":
+    def none(cls, features: Float[Tensor, "B T D"]) -> "TurningFrame":
         """Heading 0, and no steps."""
         return cls(
             features.new_zeros(features.shape[:2]), features.new_zeros(*features.shape[:2], 6)
         )
 
-    def expand(self, samples: int) -> "View":
+    def expand(self, samples: int) -> "TurningFrame":
         """The same for several samples of one motion."""
-        return View(self.turned.expand(samples, -1), self.steps.expand(samples, -1, -1))
+        return TurningFrame(self.turned.expand(samples, -1), self.steps.expand(samples, -1, -1))
 
-    def to(self, device) -> "View":
-        return View(self.turned.to(device), self.steps.to(device))
+    def to(self, device) -> "TurningFrame":
+        return TurningFrame(self.turned.to(device), self.steps.to(device))
 
     def enter(self, features: Float[Tensor, "B T 63"]) -> Float[Tensor, "B T 63"]:
         """The features (metres), with the poses of each frame turned so that they face z."""
@@ -94,9 +94,8 @@ def steps_of(
     pelvis, found = features[..., :3], []
     for toe in TOES:
         given = known[..., toe, None].expand(-1, -1, 3)
-        place = (features[..., 3 * toe : 3 * toe + 3] + pelvis).where(given, 0.0)
-        lines = blended_guess(torch.zeros_like(place), place, given, fade=torch.inf)
-        x, y, z = (changes_around(lines) / STEP).unbind(-1)
+        place = features[..., 3 * toe : 3 * toe + 3] + pelvis
+        x, y, z = (changes_around(between_known(place, given)) / STEP).unbind(-1)
         across, along = _rotated(x, z, turned)
         found += [across, y, along]
     return torch.stack(found, -1)

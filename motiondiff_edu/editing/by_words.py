@@ -22,6 +22,7 @@ from ..inbetweening import inpaint_steps
 from ..metrics.actions import HANDS, actions
 from ..motion.checks import checked_strength
 from ..motion.dance_frame import Place
+from ..motion.known import checked_given
 from ..motion.moving_frame import D
 from ..motion.root_frame import estimate_root
 from ..motion.size import leg_size
@@ -29,7 +30,6 @@ from ..motion.skeleton import HIPS, TOES, J
 from ..performers.mover import ETA, STEPS, Mover
 from ..performers.performer import Watch
 from ..performers.text_mofusion import Texts
-from .masks import checked_given
 
 STRENGTH = 0.3  # share of the diffusion steps that the motion is noised by
 FEET = (HIPS, *TOES)  # known where the legs are kept

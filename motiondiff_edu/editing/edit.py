@@ -5,10 +5,9 @@ A network generates the rest. The edit gives `known` and `positions`, as
 Source: MoFusion 4.4 (editing by seeds, keyframes and joints).
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 import torch
@@ -22,6 +21,10 @@ from .masks import PARTS, body_part, known_frames
 Pose = Float[np.ndarray, "21 3"]
 KEPT = tuple(name for name in PARTS if name != "whole body")  # parts that can be kept throughout
 CM, MM = 100.0, 1000.0
+# (positions, known, samples=, resample=, generator=) -> so many motions (metres): what generates
+# the rest of an edit. `resample` is how often each step is made. For example
+# `functools.partial(editing.inbetween.inbetween, md.load("inbetweener"))`
+Make = Callable[..., Float[np.ndarray, "N T 21 3"]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,24 +148,6 @@ class Made:
         if not np.isnan(jump):
             words.append(f"seam jump {jump:.2f} m/s (the motion before: {self.motions_jump:.2f})")
         return ", ".join(words)
-
-
-@runtime_checkable
-class Make(Protocol):
-    """A function that generates the rest of an edit: `editing.inbetween.maker(dancer)` is one.
-
-    It returns `samples` motions (metres). `resample` is how often each step is repeated.
-    """
-
-    def __call__(
-        self,
-        positions: Float[np.ndarray, "T 21 3"],
-        known: Bool[np.ndarray, "T 21"],
-        *,
-        samples: int,
-        resample: int,
-        generator: torch.Generator,
-    ) -> Float[np.ndarray, "N T 21 3"]: ...
 
 
 def make_between(

@@ -6,7 +6,7 @@ figure glides, standing, from keyframe to keyframe.
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
@@ -17,7 +17,6 @@ from ..motion.faults import WILD
 from ..motion.planting import runs
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HIPS, TOES
-from .inbetween import OURS, Departures
 
 # All from motions of training persons and synthetic walks (`recipes/recordings.py`).
 # The pelvis may be so many times as fast as is needed, plus so many m/s times the root of the
@@ -69,13 +68,13 @@ def until_plausible(
     made: Float[np.ndarray, "T 21 3"],
     given: Float[np.ndarray, "T 21 3"],
     known: Bool[np.ndarray, "T 21"],
-    again: Callable[[Departures], Float[np.ndarray, "T 21 3"]],
+    again: Callable[[float], Float[np.ndarray, "T 21 3"]],
 ) -> tuple[Float[np.ndarray, "T 21 3"], str]:
     """A generated motion, drawn again where it is not plausible, and what there is to say about it.
 
-    `again(departures)` draws another one, up to DRAWS - 1 times: without guidance if something
-    moves too fast or too low, and as before if feet glide. What is still too fast or too low is
-    drawn with smaller and smaller remainders around straight lines (`Departures.remainder`).
+    `again(remainder)` draws another one (`Inbetweener.fill`). It is called with 1, up to DRAWS - 1
+    times. What is still too fast or too low is drawn with smaller and smaller remainders around
+    straight lines.
     Between two frames that are given whole, the best draw is taken. Nothing is said of a glide that
     another draw mended.
     """
@@ -83,15 +82,13 @@ def until_plausible(
     for _ in range(DRAWS - 1):
         if not fault.words:
             return made, f"{first.words}. {AGAIN}" if first.wild else ""
-        how = replace(OURS, guidance=0.0) if fault.wild else OURS
-        made = better_parts(made, again(how), given, known)
+        made = better_parts(made, again(1.0), given, known)
         fault = fault_of(made, given, known)
     end = AGAIN
     for remainder in CALMER:
         if not fault.wild:
             break
-        calm = again(replace(OURS, guidance=0.0, remainder=remainder))
-        made, end = better_parts(made, calm, given, known), CALMED
+        made, end = better_parts(made, again(remainder), given, known), CALMED
         fault = fault_of(made, given, known)
     if fault.wild:
         return made, f"{fault.words}. {STILL}"
@@ -136,14 +133,14 @@ def each_until_plausible(
     draws: Sequence[torch.Generator],
     given: Float[np.ndarray, "T 21 3"],
     known: Bool[np.ndarray, "T 21"],
-    generate: Callable[[list, Departures], Float[np.ndarray, "N T 21 3"]],
+    generate: Callable[[list, float], Float[np.ndarray, "N T 21 3"]],
 ) -> list[tuple[Float[np.ndarray, "T 21 3"], str]]:
     """`until_plausible` of every sample; each is drawn again by its own generator.
 
-    `generate(draws, departures)` draws a motion for each of the generators.
+    `generate(draws, remainder)` draws a motion for each of the generators.
     """
     return [
-        until_plausible(first, given, known, lambda how, draw=draw: generate([draw], how)[0])
+        until_plausible(first, given, known, lambda share, draw=draw: generate([draw], share)[0])
         for draw, first in zip(draws, samples, strict=True)
     ]
 

@@ -11,14 +11,11 @@ from typing import BinaryIO
 
 import numpy as np
 import torch
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 from torch import Tensor, nn
 
-from ..beyond.activity import USED_AT_MOST
-from ..beyond.around_lines import Shown
 from ..beyond.classifier_free import guided_by_condition, while_between, without
 from ..beyond.guidance import with_guess
-from ..beyond.turning_frame import View
 from ..conditions.audio_files import SILENT, AudioError, samples_of
 from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, fingerprint, frame_times, log_mel
 from ..ddpm import Denoiser, Generators, Schedule, draw
@@ -37,7 +34,6 @@ from ..motion.retarget import SHORTEST
 from ..motion.scaler import Scaler
 from .dance_windows import FPS, mel_frames
 from .finished import finished_performance
-from .keyframe_mofusion import KeyframeMoFusion
 from .networks import register
 from .performer import Performer, Watch, evaluating, generators, sampled
 
@@ -149,47 +145,6 @@ class Dancer(Performer):
                 "so leave guidance out"
             )
         return guidance
-
-    @property
-    def can_be_shown(self) -> bool:
-        """Whether the network was made to see what is given of a motion (`shown_denoiser`)."""
-        return isinstance(self.model, KeyframeMoFusion)
-
-    def view(self, features: Float[Tensor, "B T 63"], known: Bool[Tensor, "B T 21"]) -> View:
-        """How such a network sees motions in metres (`beyond.turning_frame`).
-
-        Raises ValueError for a network that was not made for it.
-        """
-        self._must_see()
-        return self.model.view(features, known)
-
-    def shown(
-        self,
-        given: Float[Tensor, "B T D"],
-        known: Bool[Tensor, "B T D"],
-        view: View | None = None,
-    ) -> Shown:
-        """What such a network is shown of a standardised motion (`beyond.around_lines`).
-
-        `given` is seen in this view already (`beyond.turning_frame`). Its `beyond.activity` is
-        limited. Raises ValueError for a network that was not made for it.
-        """
-        self._must_see()
-        return self.model.shown(given, known, view, USED_AT_MOST)
-
-    def shown_denoiser(self, shown: Shown) -> Denoiser:
-        """`denoise(r_s, s) -> eps_hat` for remainders, of a network that is shown what is given.
-
-        Raises ValueError for a network that was not made for it.
-        """
-        self._must_see()
-        return self._clamped(self._denoiser(self.model, shown))
-
-    def _must_see(self) -> None:
-        if not self.can_be_shown:
-            raise ValueError(
-                f"{type(self.model).__name__} is not made to see what is given: use `denoiser`"
-            )
 
     def _to(self, music: Music | None, frames: int) -> Denoiser:
         """The denoiser for music that the network has listened to already."""

@@ -1,4 +1,4 @@
-"""The networks that a walker or a dancer can have.
+"""The networks that a performer can have.
 
 After one call of `register`, your own network is built, saved and loaded like ours.
 
@@ -19,6 +19,7 @@ NEEDED = {
     "walker": ("D", "C", "S", "T_h", "T_p", "target"),
     "dancer": ("D", "C", "S", "target"),
     "mover": ("D", "C", "S", "target", "words"),
+    "inbetweener": ("D", "C", "S", "target"),
 }
 
 
@@ -52,14 +53,15 @@ def register(
     *,
     build: Callable[..., nn.Module] | None = None,
 ) -> None:
-    """Register a network for a "walker", a "dancer" or a "mover"; files name it by its class.
+    """Register a network for a performer, one of NEEDED; files name it by its class.
 
-    model   the class. All networks have `decode(x_s, s, memory)`, which returns the target, and
-            `encode`, which makes the memory once for all steps: of past and control for a walker,
-            of music and a number of frames for a dancer, of a text and frames for a mover. For
-            training they are called with (x_s, s, past, control), or (x_s, s, music). A dancer's
-            has also `listen(mel, times)`, which makes that music, a mover's `listen(texts)`. A
-            mover that plans is a `PlannedMoFusion`
+    model   the class. All networks but an in-betweener's have `decode(x_s, s, memory)`, which
+            returns the target, and `encode`, which makes the memory once for all steps: of past and
+            control for a walker, of music and a number of frames for a dancer, of a text and frames
+            for a mover. For training they are called with (x_s, s, past, control), or (x_s, s,
+            music). A dancer's has also `listen(mel, times)`, which makes that music, a mover's
+            `listen(texts)`. A mover that plans is a `PlannedMoFusion`. An in-betweener's has the
+            methods of `KeyframeMoFusion`
     config  a frozen dataclass with a default for every field, including `target`; the network keeps
             it as `.config`
     build   `build(config, *scalers)` makes a new network (default: `model(config)`); the scalers
@@ -97,7 +99,7 @@ def register(
 
 
 def networks_of(performer: str) -> dict[str, Network]:
-    """The networks for a "walker", "dancer" or "mover", by the names of their classes."""
+    """The networks for a performer, one of NEEDED, by the names of their classes."""
     return {name: one for name, one in _NETWORKS.items() if one.performer == performer}
 
 

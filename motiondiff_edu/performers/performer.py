@@ -1,4 +1,4 @@
-"""What walkers, dancers and movers share: a network and its noise schedule, and sampling."""
+"""What all performers share: a network and its noise schedule, and sampling."""
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -66,7 +66,7 @@ def evaluating(model: nn.Module) -> Iterator[None]:
 
 
 class Performer:
-    """A trained network and its schedule; `Walker`, `Dancer` and `Mover` add their units.
+    """A trained network and its schedule; each kind of performer adds its units.
 
     Raises ValueError for a schedule with another number of steps than the network's.
     """
@@ -91,11 +91,11 @@ class Performer:
 
     def __getattr__(self, name: str):
         """Called for missing attributes: `walker.dance` raises an error that names the dancer."""
-        verb = {"walk": "walker", "dance": "dancer", "act": "mover"}.get(name)
-        if verb:
-            raise AttributeError(
-                f"a {type(self).__name__.lower()} cannot {name}; md.load({verb!r}) can"
-            )
+        verbs = {"walk": "walker", "dance": "dancer", "act": "mover", "fill": "inbetweener"}
+        if name in verbs:
+            this = type(self).__name__.lower()
+            article = "an" if this[0] in "aeiou" else "a"
+            raise AttributeError(f"{article} {this} cannot {name}; md.load({verbs[name]!r}) can")
         return object.__getattribute__(self, name)  # the usual error, or that inside a property
 
     @property

@@ -6,14 +6,11 @@ Notebook: 00
 from pathlib import Path
 
 from ..conditions.clip import Clip
-from ..performers.dancer import Dancer
-from ..performers.mover import Mover
-from ..performers.walker import Walker
 from . import checkpoints
-from .checkpoints import CheckpointError
+from .checkpoints import AnyPerformer, CheckpointError
 
 
-def load(name: str | Path, clip: Clip | str | Path | None = None) -> Walker | Dancer | Mover:
+def load(name: str | Path, clip: Clip | str | Path | None = None) -> AnyPerformer:
     """A performer: shipped weights by name ("walker", "dancer", "mover" ...), or your own file.
 
     `clip`: for your own mover that reads by CLIP, the folder of that CLIP (`checkpoints.load`).

@@ -1,4 +1,4 @@
-"""Trained walkers, dancers and movers on disk, and the shipped ones by name.
+"""Trained performers on disk, and the shipped ones by name.
 
 Safetensors with a card that says what they are and how they were made; float16 by default.
 Notebook: 00, 07, 12
@@ -26,6 +26,7 @@ from ..ddpm import make_schedule
 from ..motion.scaler import Scaler
 from ..performers import hearing_mofusion  # noqa: F401
 from ..performers.dancer import Dancer
+from ..performers.inbetweener import Inbetweener
 from ..performers.mover import Mover
 from ..performers.networks import kind_of, networks_of
 from ..performers.walker import Walker
@@ -43,6 +44,7 @@ __all__ = [
 ]
 
 FOLDER = Path(__file__).parent
+AnyPerformer = Walker | Dancer | Mover | Inbetweener
 
 
 @dataclass(frozen=True)
@@ -63,12 +65,15 @@ class Kind:
 WALKER = Kind("walker", "motiondiff_edu walker 2", Walker, {"pose": "D", "control": "C"}, "MoDiff")
 DANCER = Kind("dancer", "motiondiff_edu dancer 1", Dancer, {"motion": "D", "mel": "C"}, "MoFusion")
 MOVER = Kind("mover", "motiondiff_edu mover 1", Mover, {"motion": "D"}, "TextMoFusion")
-KINDS = (WALKER, DANCER, MOVER)
+INBETWEENER = Kind(
+    "inbetweener", "motiondiff_edu inbetweener 1", Inbetweener, {"motion": "D"}, "KeyframeMoFusion"
+)
+KINDS = (WALKER, DANCER, MOVER, INBETWEENER)
 STORED = {8: pack, 16: halved, 32: dict}
 
 
-def save(figure: Walker | Dancer | Mover, path: str | Path, bits: int = 16) -> Path:
-    """Write a walker, a dancer or a mover: weights, scalers, schedule.
+def save(figure: AnyPerformer, path: str | Path, bits: int = 16) -> Path:
+    """Write a performer: weights, scalers, schedule.
 
     Weights are stored as float16; `bits=32` leaves them unchanged, `bits=8` uses `eight_bits`.
 
@@ -81,7 +86,8 @@ def save(figure: Walker | Dancer | Mover, path: str | Path, bits: int = 16) -> P
         raise ValueError(f"weights are written in 8, 16 or 32 bits, not {bits}")
     kind = next((kind for kind in KINDS if isinstance(figure, kind.performer)), None)
     if kind is None:
-        raise ValueError(f"save takes a Walker, a Dancer or a Mover, not a {type(figure).__name__}")
+        names = ", ".join(kind.performer.__name__ for kind in KINDS)
+        raise ValueError(f"save takes one of {names}, not a {type(figure).__name__}")
     if Path(path).suffix != ".safetensors":
         raise ValueError(f"weights are written to a file .safetensors, not to {Path(path).name!r}")
     network = type(figure.model).__name__
@@ -117,8 +123,8 @@ def bits_of(path: str | Path) -> int:
     return 8 if "I8" in kinds else 16 if "F16" in kinds else 32
 
 
-def load(path: str | Path, clip: Clip | str | Path | None = None) -> Walker | Dancer | Mover:
-    """Read a walker, a dancer or a mover, whichever it is.
+def load(path: str | Path, clip: Clip | str | Path | None = None) -> AnyPerformer:
+    """Read a performer, whichever it is.
 
     `clip`: for a mover that reads by CLIP, that CLIP or its folder; without it the CLIP is looked
     for by the name in the file (`conditions.clip.load`), on this machine.
@@ -139,9 +145,7 @@ def load_dancer(path: str | Path) -> Dancer:
     return _read(path, DANCER)
 
 
-def _read(
-    path: str | Path, *kinds: Kind, clip: Clip | str | Path | None = None
-) -> Walker | Dancer | Mover:
+def _read(path: str | Path, *kinds: Kind, clip: Clip | str | Path | None = None) -> AnyPerformer:
     return read_weights(path, {kind.format: partial(_assembled, kind, clip=clip) for kind in kinds})
 
 
@@ -150,7 +154,7 @@ def _assembled(
     tensors: dict[str, Tensor],
     metadata: dict[str, str],
     clip: Clip | str | Path | None = None,
-) -> Walker | Dancer | Mover:
+) -> AnyPerformer:
     networks = networks_of(kind.name)
     config = config_of(metadata, {name: one.config for name, one in networks.items()}, kind.usual)
     sizes = {name: getattr(config, width) for name, width in kind.scalers.items()}
@@ -217,7 +221,7 @@ def available() -> dict[str, Path]:
     return {path.stem: path for path in sorted(FOLDER.glob("*.safetensors"))}
 
 
-def pretrained(name: str = "walker") -> Walker | Dancer | Mover:
+def pretrained(name: str = "walker") -> AnyPerformer:
     """Shipped weights by name: "walker" walks, "dancer" dances; `available` has all names.
 
     Raises CheckpointError with the names there are.

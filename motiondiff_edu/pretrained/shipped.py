@@ -11,25 +11,22 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from ..editing import by_words
-from ..editing import inbetween as inbetweens
 from ..editing import reconstruct as reconstruction
 from ..editing.by_words import STRENGTH
-from ..editing.inbetween import OURS, Departures
-from ..editing.masks import checked_known
+from ..editing.inbetween import finished
 from ..editing.plausible import each_until_plausible, longest_glide
 from ..motion.checks import checked_count, checked_samples, checked_seed, checked_strength
+from ..motion.known import checked_known
 from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
 from ..motion.progress import bar
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HIPS, TOES
-from ..performers.dancer import Dancer
 from ..performers.finished import finished_edit, finished_performance
+from ..performers.inbetweener import STEPS, Inbetweener
 from ..performers.mover import LONGEST, SHORTEST, Mover
 from ..performers.performer import generators
 from ..performers.walker import Walker
 from . import checkpoints
-
-STEPS = 50  # of DDIM, for in-betweens by default
 
 
 def inbetween(
@@ -41,7 +38,7 @@ def inbetween(
     steps: int = STEPS,
     progress: bool = True,
 ) -> Motion | list[Motion]:
-    """Generate the joints that are not `known`, with a shipped network that sees the others.
+    """Generate the joints that are not `known`, with the shipped in-betweener.
 
     Known joints stay exactly where they are. In a frame with a known joint, the pelvis must be
     known too. With `samples` above 1, the result is a list with this many motions.
@@ -55,22 +52,24 @@ def inbetween(
     """
     known, count = _fitting(motion, known), checked_samples(samples)
     checked_seed(seed)
-    steps = min(checked_count(steps, "steps"), _shipped("inbetweens").schedule.S)
+    inbetweener = _shipped("inbetweener")
+    steps = min(checked_count(steps, "steps"), inbetweener.schedule.S)
     if known.all():
         raise MotionError(f"{motion.name}: every joint is known, so there is nothing to generate")
     if not known.any():
         words = "no joint is known, so the result has nothing to do with this motion"
         warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
 
-    def generate(draws: list, departures: Departures) -> Float[np.ndarray, "samples T 21 3"]:
-        return inbetweens.inbetween(
-            _shipped("inbetweens"), motion.positions, known, samples=len(draws), steps=steps,
-            generator=draws, departures=departures, watch=bar("filling in", steps + 1, progress),
+    def generate(draws: list, remainder: float) -> Float[np.ndarray, "samples T 21 3"]:
+        made = inbetweener.fill(
+            motion.positions, known, samples=len(draws), steps=steps, remainder=remainder,
+            generator=draws, watch=bar("filling in", steps + 1, progress),
         )  # fmt: skip
+        return finished(made, motion.positions, known)
 
     draws = generators(seed, count)
     made, notes = [], []
-    first = generate(draws, OURS)
+    first = generate(draws, 1.0)
     for positions, note in each_until_plausible(first, draws, motion.positions, known, generate):
         whole = positions if known.any() else finished_performance(positions, FPS)
         made.append(_made(motion, known, whole, "in-betweens"))
@@ -179,7 +178,7 @@ def edit(
 
 
 @lru_cache(maxsize=4)
-def _shipped(name: str) -> Walker | Dancer | Mover:
+def _shipped(name: str) -> Walker | Mover | Inbetweener:
     return checkpoints.pretrained(name)
 
 

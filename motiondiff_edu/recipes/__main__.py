@@ -1,6 +1,6 @@
 """`python -m motiondiff_edu.recipes [NAME ...]`: train the shipped performers.
 
-Walkers, dancers, movers and the judges of words: all that are shipped (hours), or those named.
+All that are shipped, the judges of words included (hours), or those named.
 """
 
 import argparse
@@ -11,14 +11,12 @@ import torch
 
 from ..conditions import clip as clips
 from ..motion.motion import MotionError
-from ..performers.dancer import Dancer
-from ..performers.mover import Mover
-from ..performers.walker import Walker
 from ..pretrained.by_name import load
-from ..pretrained.checkpoints import save
+from ..pretrained.checkpoints import AnyPerformer, save
 from ..pretrained.judges import save_judge
 from .dancers import DANCE_RECIPES, SHIPPED_DANCERS
 from .ear import TrainedEar, ear_within
+from .inbetweener import INBETWEENER, train_inbetweener
 from .judges import JUDGES, train_judge
 from .movers import MOVER, MOVER_RECIPES
 from .recordings import RecordingsError, recording_files
@@ -27,11 +25,11 @@ from .train_mover import train_mover
 from .train_walker import clips_of, train
 from .walkers import PAIRS, RECIPES, SHIPPED
 
-ALL = RECIPES | DANCE_RECIPES | MOVER_RECIPES | JUDGES
+ALL = RECIPES | DANCE_RECIPES | {INBETWEENER.name: INBETWEENER} | MOVER_RECIPES | JUDGES
 EIGHT_BITS = {
     "dancer",
     "dancer-plain",
-    "inbetweens",
+    "inbetweener",
     "mover",
     "regression",
     "unconditional",
@@ -40,7 +38,9 @@ EIGHT_BITS = {
     *(recipe.name for recipe in PAIRS),
 }  # to keep the package small; the others are stored in 16 bits
 
-EVERY = [recipe.name for recipe in (*SHIPPED, *SHIPPED_DANCERS, MOVER, *JUDGES.values())]
+EVERY = [
+    recipe.name for recipe in (*SHIPPED, *SHIPPED_DANCERS, INBETWEENER, MOVER, *JUDGES.values())
+]
 
 
 def main() -> None:
@@ -149,7 +149,7 @@ def trained(
     data: Path | None = None,
     clip: str | None = None,
     ear: TrainedEar | None = None,
-) -> Walker | Dancer | Mover:
+) -> AnyPerformer:
     """The performer of a recipe, trained, or continued from `run`.
 
     `data` is a folder with motions for a walker, `clip` the folder of a CLIP, and `ear` a trained
@@ -160,6 +160,8 @@ def trained(
         recipe = DANCE_RECIPES[name]
         own = ear if getattr(recipe, "ear", None) else None
         return train_dancer(recipe, run, log=say, ear=own, device=device)
+    if name == INBETWEENER.name:
+        return train_inbetweener(INBETWEENER, run, log=say, device=device)
     if name in MOVER_RECIPES:
         recipe = MOVER_RECIPES[name]
         reader = clips.load(clip) if clip and recipe.config.clip else None

@@ -11,7 +11,6 @@ from ..baselines.transformer import TransformerConfig
 from ..kinematic_loss import KinematicWeights
 from ..mofusion import MOFUSION_FULL, MOFUSION_SMALL, MoFusionConfig
 from ..performers.hearing_mofusion import HearingConfig
-from ..performers.keyframe_mofusion import KeyframeConfig
 from .ear import EAR, EarRecipe
 
 KINEMATIC = KinematicWeights(
@@ -59,24 +58,6 @@ class DanceRecipe:
     motions: int = 0  # if not 0: so many walks and dances without music, instead of songs
     data_seed: int = 1
     seed: int = 0
-
-
-@dataclass(frozen=True)
-class KeyframeRecipe(DanceRecipe):
-    """A training run of a network that sees what is given of a motion (`KeyframeMoFusion`)."""
-
-    acts: int = 0  # so many performed sentences beside the walks and dances
-    recordings: int = 0  # so many versions of each training recording, some of them unvaried
-    unvaried: float = 0.0  # share of the motions that stay as they were made
-    # of the others:
-    levels: float = 0.0  # share of the synthetic motions that are performed lower and leaning
-    paces: float = 0.0  # share of the synthetic motions whose pace changes, with pauses; that of
-    # every recording changes, but for its first version's
-    variations: float = 0.0  # share with limbs turned; with pelvis moved; with another upper body
-    path_scale: float = 0.3  # m: the unit of the pelvis' path (`train_dancer.with_path_scale`)
-    # of all, whenever they are drawn:
-    sizes: float = 0.0  # bodies are so much larger or smaller, at most (share)
-    stages: float = 0.0  # share of all motions that are higher than the floor, by up to a metre
 
 
 @dataclass(frozen=True)
@@ -133,24 +114,5 @@ UNCONDITIONAL = DanceRecipe(
     motions=3000,
 )
 
-INBETWEENS = KeyframeRecipe(
-    "inbetweens",
-    KeyframeConfig(activity=True, turning=True),
-    steps=10_000,
-    kinematic=KINEMATIC,
-    loss_weights=OURS,
-    snr=0.3,
-    songs=0,
-    motions=1500,
-    acts=1000,
-    recordings=40,
-    levels=0.3,
-    paces=0.5,
-    variations=0.6,
-    unvaried=0.5,
-    sizes=0.1,
-    stages=0.2,
-)
-
-SHIPPED_DANCERS = (DANCER, DANCER_PLAIN, REGRESSED, UNCONDITIONAL, INBETWEENS)
+SHIPPED_DANCERS = (DANCER, DANCER_PLAIN, REGRESSED, UNCONDITIONAL)
 DANCE_RECIPES = {recipe.name: recipe for recipe in (*SHIPPED_DANCERS, DANCER_FULL)}

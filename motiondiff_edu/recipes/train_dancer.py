@@ -3,8 +3,6 @@
 The loss is MoFusion's with the departures of the recipe. A killed run continues from its last save.
 """
 
-from collections.abc import Iterator
-from dataclasses import replace
 from functools import lru_cache, partial
 from pathlib import Path
 
@@ -17,22 +15,16 @@ from ..baselines.regression import regression_loss
 from ..beyond.classifier_free import without
 from ..beyond.gain_noise import gain_noise
 from ..beyond.schedules import shifted
-from ..beyond.turning_frame import View
 from ..ddpm import Schedule, cosine_schedule
 from ..metrics.bone_lengths import bone_lengths
 from ..motion import dance_frame
-from ..motion.scaler import Scaler
-from ..motion.skeleton import J
-from ..performers.dance_windows import FITTED, DanceWindows, toes_moved
+from ..performers.dance_windows import DanceWindows, toes_moved
 from ..performers.dancer import Dancer
-from ..performers.keyframe_mofusion import KeyframeConfig
 from ..performers.networks import network
 from ..training import LossFn
-from .dancers import DanceRecipe, KeyframeRecipe, SongRecipe
+from .dancers import DanceRecipe, SongRecipe
 from .ear import TrainedEar, ear_of
-from .keyframe_loss import keyframe_loss_of
 from .mofusion_loss import batch_loss, weighted_loss
-from .recordings import CREDIT, Recorded, training_recordings
 from .songs import songs_as_mel
 from .train_recipe import Provenance, train_recipe
 
@@ -45,11 +37,6 @@ def training_windows(recipe: DanceRecipe) -> DanceWindows:
     The last data set is kept, because it takes minutes to generate.
     Raises ValueError for a recipe that has neither songs nor motions.
     """
-    if isinstance(recipe, KeyframeRecipe):
-        windows = _keyframe_windows(data_of(recipe))
-        if recipe.config.turning:
-            windows = replace(windows, motion_scaler=scaler_of_turning(windows))
-        return with_path_scale(windows, recipe.path_scale)
     seeds = recipe.data_seed, recipe.seconds
     if isinstance(recipe, SongRecipe):
         return _song_windows(recipe.songs, *seeds, recipe.dances, recipe.frames)
@@ -78,80 +65,6 @@ def _motion_windows(count: int, seed: int, seconds: float, frames: int) -> Dance
 
     positions, contacts = zip(*motions(count, seed, seconds), strict=True)
     return DanceWindows.of(positions, contacts, None, frames)
-
-
-NOT_DATA = (
-    "name", "config", "steps", "kinematic", "loss_weights", "snr", "lr", "optimizer", "batch",
-    "decay", "seed", "path_scale", "sizes", "stages",
-)  # fmt: skip
-
-
-def data_of(recipe: KeyframeRecipe) -> KeyframeRecipe:
-    """The recipe without all that does not change its data, so that trainings share them."""
-    plain = KeyframeRecipe("", KeyframeConfig(), steps=0)
-    return replace(recipe, **{name: getattr(plain, name) for name in NOT_DATA})
-
-
-@lru_cache(maxsize=1)
-def _keyframe_windows(recipe: KeyframeRecipe) -> DanceWindows:
-    positions, contacts = zip(*varied(recipe), strict=True)
-    return DanceWindows.of(positions, contacts, None, recipe.frames)
-
-
-def varied(recipe: KeyframeRecipe) -> Iterator[Recorded]:
-    """Walks, dances, performed sentences and recordings, each in a variation that is drawn.
-
-    Levels, upper body, pelvis, limbs, pace: in this order, so that feet stand where they stood and
-    a pace is that of the whole figure. The first version of a recording keeps its pace. The share
-    `unvaried` of all stays as it was made.
-    """
-    from data_synth import levels, mixed, variations, warps
-
-    seed = recipe.data_seed
-    recorded = training_recordings() if recipe.recordings else []  # at first: they can be missing
-    made = [
-        *mixed.motions(recipe.motions, seed, recipe.seconds),
-        *mixed.sentences(recipe.acts, seed),
-    ]
-    every = [*made, *recorded * recipe.recordings]
-    for k, (positions, contacts) in enumerate(every):
-        if np.random.default_rng([seed, 9, k]).uniform() < recipe.unvaried:
-            yield positions.astype(np.float32), contacts
-            continue
-        rng = np.random.default_rng([seed, 8, k])
-        if k < len(made) and rng.uniform() < recipe.levels:
-            positions = levels.at_levels(positions, rng)
-        if rng.uniform() < recipe.variations:
-            upper, _ = every[rng.integers(len(every))]
-            positions = variations.with_upper_body_of(positions, upper)
-        if rng.uniform() < recipe.variations:
-            positions = variations.pelvis_moved(positions, rng)
-        if rng.uniform() < recipe.variations:
-            positions = variations.limbs_turned(positions, rng)
-        share = recipe.paces if k < len(made) else float(k >= len(made) + len(recorded))
-        if rng.uniform() < share:
-            positions, contacts = warps.warped(positions, contacts, rng)
-        yield positions.astype(np.float32), contacts
-
-
-def scaler_of_turning(windows: DanceWindows) -> Scaler:
-    """The scaler of the same windows, seen in each frame's own heading (`beyond.turning_frame`)."""
-    some = torch.linspace(0, len(windows) - 1, min(len(windows), FITTED)).long()
-    features = windows.motion_scaler.inverse(windows.take(some)[0])
-    known = torch.ones(*features.shape[:2], J, dtype=torch.bool)
-    return Scaler.fit(View.of(features, known).enter(features))
-
-
-def with_path_scale(windows: DanceWindows, metres: float) -> DanceWindows:
-    """The same windows, in which a change of the pelvis' path by `metres` counts as 1.
-
-    A path goes on for metres, so in standard deviations the centimetres between two keyframes are
-    next to nothing.
-    """
-    scaler = windows.motion_scaler
-    std = scaler.std.clone()
-    std[dance_frame.PATH] = metres
-    return replace(windows, motion_scaler=Scaler(scaler.mean, std))
 
 
 def train_dancer(
@@ -186,15 +99,12 @@ def train_dancer(
         about["ear"] = digest_of_tensors(trained_ear.ear.state_dict())[:16]
         facts["ear"] = trained_ear.card
     made_of = "mixed" if recipe.motions else "music.varied and data_synth.dancing"
-    source = f"data_synth.{made_of}, synthetic"
-    if getattr(recipe, "recordings", 0):
-        source = f"data_synth.{made_of} and recordings. {CREDIT}"
     trained, card = train_recipe(
         recipe,
         run_file,
         model,
         loss_of(recipe, windows, schedule),
-        Provenance(about, facts, source),
+        Provenance(about, facts, f"data_synth.{made_of}, synthetic"),
         warmup=300,
         log=log,
         device=device,
@@ -219,8 +129,6 @@ def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> L
     """The loss of a recipe: MoFusion's, or a regression's if the network is deterministic."""
     if getattr(recipe.config, "deterministic", False):
         return regression_loss_of(recipe, windows)
-    if isinstance(recipe, KeyframeRecipe):
-        return keyframe_loss_of(recipe, windows, schedule)
     scaler = windows.motion_scaler
     moved = partial(toes_moved, windows)
     loss = weighted_loss(recipe.loss_weights, schedule, scaler, dance_frame.moves, moved)

@@ -53,8 +53,8 @@ class _Grip:
 class Editor(anywidget.AnyWidget):
     """Edit a motion (T, 21, 3), world positions in metres; `make` generates the rest.
 
-    make   an `editing.edit.Make`, for example `editing.inbetween.maker(dancer)`; it runs in the
-           kernel with `samples` and `resample` from the page
+    make   an `editing.edit.Make`, such as `partial(editing.inbetween.inbetween, inbetweener)`; it
+           runs in the kernel with `samples` and `resample` from the page
     names  the names of the 21 joints on the page
     seed   the generator's seed is `seed` + the number of times Generate was pressed before
     `known`, `positions`, `samples` and `chosen` can be read. `pin`, `unpin`, `drag`, `keep`,

@@ -12,15 +12,15 @@ STACK = """<div style="position:relative;width:100%;max-width:1200px;min-height:
 <iframe title="{title}" sandbox="allow-scripts" loading="lazy" srcdoc="{page}"
  style="position:absolute;inset:0;width:100%;height:100%;border:0"></iframe></div>"""
 
-Shown = dict | tuple[dict, dict] | None  # what a widget's `_repr_mimebundle_` returns
+MimeBundle = dict | tuple[dict, dict] | None  # what a widget's `_repr_mimebundle_` returns
 
 
-def split(live: Shown) -> tuple[dict, dict]:
+def split(live: MimeBundle) -> tuple[dict, dict]:
     """A widget's MIME bundle and its metadata, whichever of them it gave."""
     return live if isinstance(live, tuple) else (live or {}, {})
 
 
-def with_still(live: Shown, still: dict[str, str]) -> tuple[dict, dict]:
+def with_still(live: MimeBundle, still: dict[str, str]) -> tuple[dict, dict]:
     """The live widget, and MIME types that stand for it where it does not run."""
     bundle, metadata = split(live)
     return bundle | still, metadata

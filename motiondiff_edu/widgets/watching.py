@@ -36,7 +36,7 @@ def watched(
     `every`: seconds of training from one picture to the next; longer where pictures are slow.
     `past`: frames of it that were given.
     """
-    shown = _Shown(steps, moving(), past)
+    shown = _PlayerAndCurve(steps, moving(), past)
     losses = []
     drawn, took = clock(), 0.0
     for report in reports:
@@ -52,7 +52,7 @@ def watched(
         shown.for_good()
 
 
-class _Shown:
+class _PlayerAndCurve:
     """The player and, below it, the curve; each is replaced where it stands."""
 
     def __init__(self, steps: int, figures: Figures, past: int | None):

@@ -14,8 +14,9 @@ from motiondiff_edu.beyond.activity import (
     activity_of,
     with_activity,
 )
-from motiondiff_edu.beyond.around_lines import Shown, lines_through
+from motiondiff_edu.beyond.around_lines import GivenLines
 from motiondiff_edu.motion.dance_frame import placed_features
+from motiondiff_edu.motion.known import between_known
 from motiondiff_edu.motion.scaler import Scaler
 
 T = 101
@@ -32,7 +33,7 @@ def given_at(frames, T: int = T, D: int = 4, n: int = 1) -> torch.Tensor:
 
 
 def of(x: torch.Tensor, known: torch.Tensor) -> torch.Tensor:
-    return activity_of(lines_through(x, known), known)
+    return activity_of(between_known(x, known), known)
 
 
 def steady(speed: float) -> torch.Tensor:
@@ -88,11 +89,11 @@ def test_the_path_has_an_activity_of_its_own():
     """Who waves on the spot is not expected to sway, nor who slides along to wave."""
     x, known = torch.zeros(1, T, 63), given_at(slice(None, None, SPAN), D=63)
     x[..., 3:] = steady(2.0)[..., :1]
-    waving = activity(lines_through(x, known), known)[0, T // 2]
+    waving = activity(between_known(x, known), known)[0, T // 2]
     assert (waving[[0, 2]] < 0.1).all() and (waving[3:] > 1).all() and waving[1] == waving[3]
     x = torch.zeros(1, T, 63)
     x[..., 0] = steady(2.0)[..., 0]
-    sliding = activity(lines_through(x, known), known)[0, T // 2]
+    sliding = activity(between_known(x, known), known)[0, T // 2]
     assert (sliding[[0, 2]] > 1).all()
     torch.testing.assert_close(sliding[3:], of(x, known)[0, T // 2].expand(60))
 
@@ -105,7 +106,7 @@ def test_it_has_no_jumps():
 
 def test_what_is_given_comes_back_and_the_limit_is_kept():
     x, known = 3 * torch.randn(2, T, 4, generator=seeded()), given_at(slice(None, None, 10), n=2)
-    shown = Shown.of(x, known)
+    shown = GivenLines.of(x, known)
     lively, limited = with_activity(shown), with_activity(shown, USED_AT_MOST)
     for one in (lively, limited):
         assert torch.equal(one.whole(torch.ones_like(x))[known], shown.lines[known])
@@ -114,7 +115,7 @@ def test_what_is_given_comes_back_and_the_limit_is_kept():
     assert torch.equal(limited.scale, lively.scale), "the network sees no limit"
     one = torch.ones_like(x)
     torch.testing.assert_close(limited.whole(one), shown.whole(one))  # USED_AT_MOST is 1
-    slow = Shown.of(x / 100, known)
+    slow = GivenLines.of(x / 100, known)
     torch.testing.assert_close(with_activity(slow).scale, with_activity(slow, USED_AT_MOST).scale)
 
 
@@ -130,7 +131,7 @@ def test_sizes_of_remainders_differ_less_with_it():
     std[[0, 2]] = 0.3
     x0 = Scaler(scaler.mean, std).transform(motion)
     known = given_at(slice(None, None, SPAN), D=63, n=len(x0))
-    plain = Shown.of(x0, known)
+    plain = GivenLines.of(x0, known)
     spreads = [
         float(one.remainder(x0).square().mean((1, 2)).sqrt().log().std())
         for one in (plain, with_activity(plain))

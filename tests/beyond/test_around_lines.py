@@ -6,7 +6,7 @@ import torch
 from two_numbers import correlated
 
 from data_synth.mixed import motions
-from motiondiff_edu.beyond.around_lines import HALF, Shown, lines_through
+from motiondiff_edu.beyond.around_lines import HALF, GivenLines
 from motiondiff_edu.ddpm import cosine_schedule, final
 from motiondiff_edu.exact import conditional, exact_denoiser, mixture
 from motiondiff_edu.inbetweening import inpaint_steps
@@ -20,20 +20,10 @@ def seeded(seed: int = 0) -> torch.Generator:
     return torch.Generator().manual_seed(seed)
 
 
-def test_lines_go_from_each_given_entry_to_the_next_and_stay_outside():
-    given = torch.full((1, 7, 3), float("nan"))
-    given[0, 1, 0], given[0, 5, 0] = 2.0, 4.0
-    given[0, 3, 1] = -1.0
-    lines = lines_through(given, ~given.isnan())[0]
-    torch.testing.assert_close(lines[:, 0], torch.tensor([2, 2, 2.5, 3, 3.5, 4, 4]))
-    torch.testing.assert_close(lines[:, 1], torch.full((7,), -1.0))
-    assert torch.equal(lines[:, 2], torch.zeros(7))
-
-
 def test_the_scale_is_nothing_where_a_motion_is_given_and_grows_with_the_distance():
     known = torch.zeros(1, 7, 3, dtype=torch.bool)
     known[0, [1, 5], 0], known[0, 6, 1] = True, True
-    scale = Shown.of(torch.zeros(1, 7, 3), known).scale[0]
+    scale = GivenLines.of(torch.zeros(1, 7, 3), known).scale[0]
     between = [1 / (1 + HALF * (1 / k + 1 / (4 - k))) for k in (1, 2, 3)]
     outside = 1 / (1 + HALF)
     wanted = torch.tensor([outside, 0, *between, 0, outside])
@@ -52,7 +42,7 @@ def test_scales_are_those_of_motions():
     for every in (5, 10, 20, 50):
         known = torch.zeros(x0.shape, dtype=torch.bool)
         known[:, ::every] = True
-        shown = Shown.of(x0, known)
+        shown = GivenLines.of(x0, known)
         middle = slice(every // 2, None, every)
         size = float(shown.remainder(x0)[:, middle].square().mean().sqrt())
         assert 0.5 < size < 2, every
@@ -60,11 +50,11 @@ def test_scales_are_those_of_motions():
 
 def test_lines_and_remainder_are_the_motion():
     x0, known = torch.randn(4, 20, 6, generator=seeded()), torch.rand(4, 20, 6) < 0.3
-    shown = Shown.of(torch.where(known, x0, torch.nan), known)
+    shown = GivenLines.of(torch.where(known, x0, torch.nan), known)
     remainder = shown.remainder(x0)
     assert (remainder[known] == 0).all()
     torch.testing.assert_close(shown.whole(remainder), x0)
-    nothing = Shown.of(x0, torch.zeros_like(known))
+    nothing = GivenLines.of(x0, torch.zeros_like(known))
     assert torch.equal(nothing.remainder(x0), x0) and torch.equal(nothing.whole(x0), x0)
 
 
@@ -76,7 +66,7 @@ def test_an_exact_remainder_gives_exact_samples_of_the_rest():
     assert (mean, variance) == pytest.approx((-0.2 + 0.9 * 0.5, 1 - 0.9**2))
     known = torch.tensor([True, False]).view(1, 2, 1).expand(n, 2, 1)
     given = torch.tensor([first, 0.0]).view(1, 2, 1).expand(n, 2, 1)
-    shown = Shown.of(given, known)
+    shown = GivenLines.of(given, known)
     scale = float(shown.scale[0, 1])
     moved = mixture(
         rest.weights, (rest.means - first) / scale, rest.variances[..., None] / scale**2

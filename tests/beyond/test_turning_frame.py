@@ -1,4 +1,4 @@
-"""The view of a turning figure: headings by hand, there and back, and no figure that shrinks."""
+"""The frame of a turning figure: headings by hand, there and back, and no figure that shrinks."""
 
 import numpy as np
 import pytest
@@ -6,10 +6,11 @@ import torch
 from gaits import rest_pose
 
 from data_synth.walking import random_control, walk
-from motiondiff_edu.beyond.around_lines import Shown
-from motiondiff_edu.beyond.turning_frame import SPAN, STEP, View, headings
-from motiondiff_edu.editing.masks import body_part, keyframes, known_columns
+from motiondiff_edu.beyond.around_lines import GivenLines
+from motiondiff_edu.beyond.turning_frame import SPAN, STEP, TurningFrame, headings
+from motiondiff_edu.editing.masks import body_part, keyframes
 from motiondiff_edu.motion.dance_frame import PATH, Place, placed_features, to_positions
+from motiondiff_edu.motion.known import known_columns
 from motiondiff_edu.motion.skeleton import TOES, joint_index
 
 T = 41
@@ -71,11 +72,11 @@ def test_a_twisted_trunk_does_not_make_the_heading_jump():
 
 def test_to_enter_and_to_leave_are_inverse_and_a_turning_figure_stands_still_inside():
     features = features_of(turning(np.linspace(0.0, 2.5, T)))
-    view = View.of(features, masks(keyframes(T, 10)))
-    inside = view.enter(features)
+    frame = TurningFrame.of(features, masks(keyframes(T, 10)))
+    inside = frame.enter(features)
     torch.testing.assert_close(inside, features[:, :1].expand_as(inside), atol=1e-6, rtol=0)
-    torch.testing.assert_close(view.leave(inside), features)
-    nothing = View.none(features)
+    torch.testing.assert_close(frame.leave(inside), features)
+    nothing = TurningFrame.none(features)
     assert torch.equal(nothing.enter(features), features)
 
 
@@ -84,14 +85,14 @@ def test_a_figure_that_turns_round_keeps_its_hips_apart():
     positions, known = turning(np.linspace(0.0, 0.95 * np.pi, T)), keyframes(T, T - 1)
     features, seen = features_of(positions), columns(known)
 
-    def narrowest(view: View) -> float:
-        lines = Shown.of(view.enter(features), seen, view).lines
-        made = to_positions(view.leave(lines))[0]
+    def narrowest(frame: TurningFrame) -> float:
+        lines = GivenLines.of(frame.enter(features), seen, frame).lines
+        made = to_positions(frame.leave(lines))[0]
         return float((made[:, LEFT] - made[:, RIGHT]).norm(dim=-1).min())
 
     width = np.linalg.norm(positions[0, LEFT] - positions[0, RIGHT])
-    assert narrowest(View.of(features, masks(known))) == pytest.approx(width, abs=1e-6)
-    assert narrowest(View.none(features)) < 0.1 * width
+    assert narrowest(TurningFrame.of(features, masks(known))) == pytest.approx(width, abs=1e-6)
+    assert narrowest(TurningFrame.none(features)) < 0.1 * width
 
 
 def test_steps_are_the_speed_of_a_toe_from_place_to_place_in_the_heading():
@@ -99,7 +100,7 @@ def test_steps_are_the_speed_of_a_toe_from_place_to_place_in_the_heading():
     angle = 0.6
     positions = turning(np.full(T, angle))
     positions[:, TOES[1]] += np.linspace(0, 0.5, T)[:, None] * [np.sin(angle), 0, np.cos(angle)]
-    steps = View.of(features_of(positions), masks(keyframes(T, T - 1))).steps[0]
+    steps = TurningFrame.of(features_of(positions), masks(keyframes(T, T - 1))).steps[0]
     wanted = torch.tensor([0, 0, 0, 0, 0, 0.5 * 2 * SPAN / (T - 1) / STEP], dtype=torch.float64)
     torch.testing.assert_close(steps, wanted.expand(T, 6), atol=1e-6, rtol=1e-6)
 
@@ -112,9 +113,9 @@ def test_the_network_sees_the_same_whichever_way_a_figure_turned_before():
     for angle in (0.0, 2.0):
         turned = Place(np.array([0.3, 0.0, -1.0]), np.array(angle)).enter(clip)
         features = features_of(turned)
-        view = View.of(features, masks(known))
-        shown = Shown.of(view.enter(features), columns(known), view)
-        views.append(shown.speeds(view))
+        frame = TurningFrame.of(features, masks(known))
+        shown = GivenLines.of(frame.enter(features), columns(known), frame)
+        views.append(shown.speeds())
     torch.testing.assert_close(views[0], views[1], atol=1e-5, rtol=1e-5)
     assert views[0][..., PATH].abs().max() > 0.1
 
@@ -123,9 +124,9 @@ def test_what_is_generated_of_the_path_is_turned_and_comes_back():
     walked = walk(random_control(3.0, np.random.default_rng(1), "turn"), 0).world()[:T]
     known = keyframes(T, 10)
     features, seen = features_of(walked), columns(known)
-    view = View.of(features, masks(known))
-    inside = view.enter(features)
-    shown, plain = Shown.of(inside, seen, view), Shown.of(inside, seen)
+    frame = TurningFrame.of(features, masks(known))
+    inside = frame.enter(features)
+    shown, plain = GivenLines.of(inside, seen, frame), GivenLines.of(inside, seen)
     remainder = shown.remainder(inside)
     torch.testing.assert_close(shown.whole(remainder), inside)
     torch.testing.assert_close(

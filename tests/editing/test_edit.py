@@ -3,15 +3,17 @@
 Answers are measured as they are.
 """
 
+from functools import partial
+
 import numpy as np
 import pytest
 import torch
-from small_dancers import dancer_of_bands as dancer
+from small_dancers import small_inbetweener
 from synthetic_walk import walk
 
 from motiondiff_edu.baselines.interpolation import spherical
 from motiondiff_edu.editing.edit import Edit, drag_in_words, make_between
-from motiondiff_edu.editing.inbetween import maker
+from motiondiff_edu.editing.inbetween import inbetween
 from motiondiff_edu.editing.masks import LOWER, PARTS
 from motiondiff_edu.motion.skeleton import BONES, JOINTS, joint_index
 
@@ -108,10 +110,10 @@ def test_what_cannot_be_edited(motion):
         edit.keep("whole body")
 
 
-def test_an_untrained_dancer_keeps_what_is_held_bit_by_bit(motion):
+def test_an_untrained_network_keeps_what_is_held_bit_by_bit(motion):
     edit = Edit(motion).pin(0).pin(10).pin(23).keep("trajectory")
     edit = edit.drag(10, "RightHand", motion[10, HAND] + [0.0, 0.3, 0.1])
-    make = maker(dancer(), steps=4)
+    make = partial(inbetween, small_inbetweener(), steps=4)
     made = make_between(edit, make, seeded(1), samples=3, resample=2)
     assert made.samples.shape == (3, T, 21, 3)
     assert all(np.array_equal(one[edit.known], edit.positions[edit.known]) for one in made.samples)

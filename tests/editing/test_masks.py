@@ -1,13 +1,11 @@
 """Masks over frames and joints: what they give, and what they refuse."""
 
-import numpy as np
 import pytest
 
 from motiondiff_edu.editing.masks import (
     body_part,
     gap,
     keyframes,
-    known_columns,
     known_frames,
     seed,
 )
@@ -24,7 +22,6 @@ def test_masks():
     assert (~gap(100, 20, 15).any(-1)).nonzero()[0].tolist() == list(range(20, 35))
     both = body_part(5, "upper body").sum() + body_part(5, "lower body").sum()
     assert both == 5 * (21 + 1) and body_part(5, "trajectory").sum() == 5  # the pelvis is in each
-    assert known_columns(body_part(5, "trajectory")).sum() == 15
 
 
 def test_masks_refuse_what_is_not_there():
@@ -34,7 +31,3 @@ def test_masks_refuse_what_is_not_there():
         gap(40, 20, 30)
     with pytest.raises(KeyError, match="lower body"):
         body_part(40, "tail")
-    alone = np.zeros((40, 21), bool)
-    alone[7, 15] = True
-    with pytest.raises(ValueError, match="frame 7 gives LeftHand without the pelvis"):
-        known_columns(alone)

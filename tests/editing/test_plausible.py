@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from gaits import rest_pose
 
-from motiondiff_edu.editing.inbetween import OURS
 from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.editing.plausible import (
     AGAIN,
@@ -85,12 +84,12 @@ def test_a_glide_is_drawn_again_until_a_figure_steps():
     glides, stands = standing(speed=1.0), standing()
     drawn = []
 
-    def again(how):
-        drawn.append(how)
+    def again(remainder):
+        drawn.append(remainder)
         return stands if len(drawn) == 2 else glides
 
     made, note = until_plausible(glides, glides, KNOWN, again)
-    assert np.array_equal(made, stands) and note == "" and drawn == [OURS, OURS]
+    assert np.array_equal(made, stands) and note == "" and drawn == [1.0, 1.0]
 
 
 def test_where_every_draw_glides_the_shortest_is_given_back_and_it_is_said():
@@ -98,7 +97,7 @@ def test_where_every_draw_glides_the_shortest_is_given_back_and_it_is_said():
     shorter[30:, TOES[0], 1] += 0.2
     draws = [glides, shorter, glides]
     left = list(draws)
-    made, note = until_plausible(glides, glides, KNOWN, lambda how: left.pop(0))
+    made, note = until_plausible(glides, glides, KNOWN, lambda remainder: left.pop(0))
     assert not left and len(draws) == DRAWS - 1
     assert np.array_equal(made, shorter)
     assert "both feet slide between frames 0 and 29" in note
@@ -122,33 +121,33 @@ def jumping(metres: float) -> np.ndarray:
     return made
 
 
-def test_a_wild_motion_is_drawn_again_without_guidance_and_it_is_said():
+def test_a_wild_motion_is_drawn_again_and_it_is_said():
     drawn, stands = [], standing()
 
-    def again(how):
-        drawn.append(how)
+    def again(remainder):
+        drawn.append(remainder)
         return stands
 
     made, note = until_plausible(jumping(1.5), standing(), KNOWN, again)
-    assert np.array_equal(made, stands) and [how.guidance for how in drawn] == [0.0]
+    assert np.array_equal(made, stands) and drawn == [1.0]
     assert "30.0 m/s" in note and note.endswith(AGAIN)
 
 
 def test_where_every_draw_is_wild_the_first_is_given_back_and_it_is_said():
     first, drawn = jumping(1.5), []
 
-    def again(how):
-        drawn.append(how)
+    def again(remainder):
+        drawn.append(remainder)
         return jumping(2.0)
 
     made, note = until_plausible(first, standing(), KNOWN, again)
     assert np.array_equal(made, first) and note.endswith(STILL)
-    assert [how.remainder for how in drawn] == [1.0] * (DRAWS - 1) + list(CALMER)
+    assert drawn == [1.0] * (DRAWS - 1) + list(CALMER)
 
 
 def test_what_stays_wild_is_drawn_nearer_to_straight_lines():
     made, note = until_plausible(
-        jumping(1.5), standing(), KNOWN, lambda how: jumping(1.5 * how.remainder)
+        jumping(1.5), standing(), KNOWN, lambda remainder: jumping(1.5 * remainder)
     )
     assert np.array_equal(made, jumping(0.0)) and "30.0 m/s" in note and note.endswith(CALMED)
 
@@ -160,7 +159,7 @@ def test_only_the_part_with_the_fault_is_drawn_again():
     first[5:15, hand, 1] += 0.1
     other[5:15, hand, 1] += 0.2
     other[25:35, hand, 1] += 0.2
-    made, note = until_plausible(first, standing(), KNOWN, lambda how: other)
+    made, note = until_plausible(first, standing(), KNOWN, lambda remainder: other)
     assert np.array_equal(made[:21], first[:21]) and np.array_equal(made[20:], other[20:])
     assert note.endswith(AGAIN)
 
@@ -179,7 +178,7 @@ def test_a_fault_over_several_parts_is_mended_as_a_whole():
     glides[15:26, :, 2] += 0.04 * np.arange(11)[:, None]
     glides[26:, :, 2] += 0.4
     assert longest_glide(glides, known) == (15, 25)
-    made, note = until_plausible(glides, standing(), known, lambda how: standing())
+    made, note = until_plausible(glides, standing(), known, lambda remainder: standing())
     assert np.array_equal(made, standing()) and note == ""
 
 
@@ -187,12 +186,12 @@ def test_a_glide_is_better_than_a_jump():
     glides, jumps = standing(speed=1.0), standing(speed=1.0)
     jumps[25:30, :, 0] += 9.0
     left = [glides, jumps, jumps]
-    made, note = until_plausible(jumps, glides, KNOWN, lambda how: left.pop(0))
+    made, note = until_plausible(jumps, glides, KNOWN, lambda remainder: left.pop(0))
     assert not left and "both feet slide between frames 0 and 40" in note
     assert np.array_equal(made, glides)
 
 
 def test_a_plausible_motion_is_given_back_as_it_is():
     given = standing()
-    made, note = until_plausible(given, given, KNOWN, lambda how: pytest.fail("drawn again"))
+    made, note = until_plausible(given, given, KNOWN, lambda remainder: pytest.fail("drawn again"))
     assert made is given and note == ""

@@ -1,6 +1,6 @@
-"""Dancers with random weights, small enough for a test.
+"""Dancers and in-betweeners with random weights, small enough for a test.
 
-They dance noise; how they are called is the same as for trained ones.
+They move like noise; how they are called is the same as for trained ones.
 """
 
 import torch
@@ -9,6 +9,11 @@ from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.dancer import Dancer
+from motiondiff_edu.performers.inbetweener import (
+    Inbetweener,
+    KeyframeConfig,
+    KeyframeMoFusion,
+)
 
 TINY = MoFusionConfig(S=12, widths=(16, 24), heads=2, music_layers=1, target="x0", skip=False)
 HEARS = MoFusionConfig(C=5, S=30, widths=(16, 24), heads=2, music_layers=1, target="x0", skip=False)
@@ -34,3 +39,12 @@ def dancer_of_bands(C: int = 0) -> Dancer:
         weight.add_(0.1 * torch.randn(weight.shape))
     scalers = Scaler(torch.zeros(63), torch.full((63,), 0.2)), Scaler.nothing(C)
     return Dancer(model, cosine_schedule(30), *scalers)
+
+
+def small_inbetweener(**changes) -> Inbetweener:
+    torch.manual_seed(0)
+    config = KeyframeConfig(**{"S": 30, "widths": (16, 24), "heads": 2, **changes})
+    model = KeyframeMoFusion(config).eval().requires_grad_(False)
+    for weight in model.parameters():
+        weight.add_(0.1 * torch.randn(weight.shape))
+    return Inbetweener(model, cosine_schedule(30), Scaler(torch.zeros(63), torch.full((63,), 0.2)))

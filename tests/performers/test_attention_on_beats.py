@@ -85,9 +85,9 @@ def test_maps_come_from_the_seed_and_depend_on_the_step():
 def test_a_network_without_music_and_a_step_too_far_are_named():
     with pytest.raises(ValueError, match="need a U-Net with music"):
         maps(C=0)
-    with pytest.raises(ValueError, match="has a KeyframeMoFusion"):
+    with pytest.raises(ValueError, match="has a HearingTransformer"):
         attention_on_beats.attention_maps(
-            checkpoints.pretrained("inbetweens"), torch.zeros(50, 80), np.zeros((50, 21, 3)), 5
+            checkpoints.pretrained("regression"), torch.zeros(50, 80), np.zeros((50, 21, 3)), 5
         )
     with pytest.raises(ValueError, match="1 to 12, not 13"):
         maps(s=13)

@@ -102,8 +102,9 @@ def test_a_dancers_network_is_no_walkers(registry, tmp_path: Path):
 
 def test_ours_are_registered():
     assert list(networks_of("walker")) == ["MoDiff", "FootholdMoDiff"]
-    dancers = {"MoFusion", "DanceTransformer", "KeyframeMoFusion"}
+    dancers = {"MoFusion", "DanceTransformer"}
     assert set(networks_of("dancer")) == dancers | {"HearingMoFusion", "HearingTransformer"}
+    assert list(networks_of("inbetweener")) == ["KeyframeMoFusion"]
     sizes = {"T_h": T_H, "T_p": T_P, "S": S, "width": 16, "heads": 2, "hidden": 24}
     built = {
         MoDiff: network(MoDiffConfig(**sizes), POSE, CONTROL),

@@ -247,7 +247,9 @@ def test_a_foreign_safetensors_file(tmp_path: Path):
         CheckpointError, match="not a walker of this project .its tensors begin with bias, encoder"
     ):
         load_walker(path)
-    with pytest.raises(CheckpointError, match="not a walker, dancer or mover of this project"):
+    with pytest.raises(
+        CheckpointError, match="not a walker, dancer, mover or inbetweener of this project"
+    ):
         load(path)
 
 

@@ -8,11 +8,14 @@ import pytest
 
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.recipes.dancers import SHIPPED_DANCERS
+from motiondiff_edu.recipes.inbetweener import INBETWEENER
 from motiondiff_edu.recipes.movers import MOVER
 from motiondiff_edu.recipes.walkers import SHIPPED
 
 
-@pytest.mark.parametrize("recipe", [*SHIPPED, *SHIPPED_DANCERS, MOVER], ids=lambda one: one.name)
+@pytest.mark.parametrize(
+    "recipe", [*SHIPPED, *SHIPPED_DANCERS, INBETWEENER, MOVER], ids=lambda one: one.name
+)
 def test_a_card_has_its_recipe(recipe):
     said = copy.deepcopy(checkpoints.pretrained(recipe.name).card["recipe"])
     is_now = json.loads(json.dumps(asdict(recipe)))

@@ -12,8 +12,8 @@ from torch import Tensor, nn
 
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.performers.networks import network
-from motiondiff_edu.recipes import train_dancer, train_mover
-from motiondiff_edu.recipes.dancers import DANCER, INBETWEENS, REGRESSED, UNCONDITIONAL
+from motiondiff_edu.recipes import inbetweener, train_dancer, train_mover
+from motiondiff_edu.recipes.dancers import DANCER, REGRESSED, UNCONDITIONAL
 from motiondiff_edu.recipes.movers import MOVER
 from motiondiff_edu.training import LossFn
 
@@ -22,7 +22,6 @@ DANCES = {
     "dancer": replace(DANCER, songs=1, seconds=8.0, batch=2),
     "regression": replace(REGRESSED, songs=1, seconds=8.0, batch=2),
     "unconditional": replace(UNCONDITIONAL, motions=2, seconds=8.0, batch=2),
-    "inbetweens": replace(INBETWEENS, motions=2, acts=2, recordings=0, seconds=8.0, batch=3),
 }
 
 
@@ -54,7 +53,15 @@ def of_mover(name: str) -> tuple[nn.Module, LossFn]:
     return model, train_mover.loss_of(recipe, windows, schedule)
 
 
+def of_inbetweener(name: str) -> tuple[nn.Module, LossFn]:
+    few = {"motions": 2, "acts": 2, "recordings": 0, "seconds": 8.0, "batch": 3}
+    recipe = replace(inbetweener.INBETWEENER, **few)
+    windows, schedule = inbetweener.training_windows(recipe), cosine_schedule(recipe.config.S)
+    return network(recipe.config), inbetweener.loss_of(recipe, windows, schedule)
+
+
 MADE = dict.fromkeys(DANCES, of_dancer) | {"mover": of_mover, "planner": of_mover}
+MADE |= {"inbetweener": of_inbetweener}
 
 
 @pytest.mark.parametrize("name", MADE)

@@ -13,7 +13,7 @@ from motiondiff_edu.editing.plausible import SINKS, longest_glide
 from motiondiff_edu.motion.bvh.write import write_bvh
 from motiondiff_edu.motion.skeleton import HIPS
 from motiondiff_edu.recipes import __main__ as command
-from motiondiff_edu.recipes.dancers import INBETWEENS
+from motiondiff_edu.recipes.inbetweener import INBETWEENER, training_windows, varied
 from motiondiff_edu.recipes.recordings import (
     SUBJECTS,
     TRAINED,
@@ -22,11 +22,10 @@ from motiondiff_edu.recipes.recordings import (
     training_files,
     training_recordings,
 )
-from motiondiff_edu.recipes.train_dancer import training_windows, varied
 from tools.results.recordings.windows import person_of
 
 PLAIN = {"recordings": 0, "levels": 0.0, "paces": 0.0, "variations": 0.0, "unvaried": 0.0}
-RECIPE = replace(INBETWEENS, motions=2, acts=1, seconds=6.0, **PLAIN)
+RECIPE = replace(INBETWEENER, motions=2, acts=1, seconds=6.0, **PLAIN)
 
 
 @pytest.fixture
@@ -160,9 +159,9 @@ def test_no_recording_of_training_sinks_or_glides_so_that_it_would_be_drawn_agai
 
 def test_without_recordings_all_other_networks_can_be_trained(monkeypatch, capsys):
     monkeypatch.delenv("MOTIONDIFF_REAL_DATA", raising=False)
-    names = ["dancer", "inbetweens", "walker"]
+    names = ["dancer", "inbetweener", "walker"]
     assert command.buildable(names) == ["dancer", "walker"]
     told = capsys.readouterr().out
-    assert told.startswith("inbetweens is left out") and "MOTIONDIFF_REAL_DATA must name" in told
+    assert told.startswith("inbetweener is left out") and "MOTIONDIFF_REAL_DATA must name" in told
     monkeypatch.setattr(command, "recording_files", lambda: ["one.bvh"])
     assert command.buildable(names) == names and not capsys.readouterr().out

@@ -241,5 +241,4 @@ def test_with_and_without_kinematic_losses_all_else_is_alike():
         "regression",
         "dancer-full",
         "unconditional",
-        "inbetweens",
     }

@@ -3,11 +3,13 @@
 Errors, rivals, seams and spectra of motions whose measures are known.
 """
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import torch
+from small_dancers import dancer_of_bands, small_inbetweener
 
 from motiondiff_edu.metrics.bone_lengths import bone_lengths
 from motiondiff_edu.metrics.keyframes import npss
@@ -137,10 +139,10 @@ def test_every_way_is_asked_for_what_it_is_for(monkeypatch, truth):
     """
     asked = []
 
-    def made(dancer, positions, known, samples=1, **options):
+    def made(network, positions, known, samples=1, **options):
         asked.append(
             SimpleNamespace(
-                dancer=dancer,
+                network=network,
                 known=known,
                 holes=np.isnan(positions),
                 samples=samples,
@@ -149,48 +151,73 @@ def test_every_way_is_asked_for_what_it_is_for(monkeypatch, truth):
         )
         return np.zeros((samples, 100, 21, 3))
 
-    monkeypatch.setattr(inbetween, "inbetween", made)
+    for way in ("inbetween", "inpaint"):
+        monkeypatch.setattr(inbetween, way, made)
     found = inbetween.filled("shown", "masked", truth, GAP, InbetweenSize(samples=3, steps=7))
     usual, paper, free = (asked[4 * k : 4 * k + 4] for k in range(3))
     assert found.made.shape[:2] == (3, 4) and len(asked) == 12
     assert all(np.array_equal(one.holes.all(-1), ~middle(GAP)) for one in (*usual, *paper))
-    assert all(set(one.options) == {"steps", "generator"} and one.samples == 3 for one in usual)
-    assert {one.dancer for one in usual} == {"shown"}
-    assert {one.dancer for one in (*paper, *free)} == {"masked"}
-    assert all(one.options["departures"] == inbetween.PAPER for one in paper)
+    assert all(set(one.options) == {"steps", "generator"} for one in asked)
+    assert all(one.samples == 3 for one in usual)
+    assert {one.network for one in usual} == {"shown"}
+    assert {one.network for one in (*paper, *free)} == {"masked"}
     assert not any(one.known.any() for one in free)
 
 
 def test_departures_are_measured_on_the_same_noise_one_left_out_at_a_time(monkeypatch):
-    """The networks are replaced by one that stretches the gap where bones may change, and errs.
+    """The networks are replaced by one that stretches the gap, which `finished` mends, and errs.
 
     The one that is not shown what is given errs more, and most without guidance.
     """
     asked = []
 
-    def made(dancer, positions, known, *, samples, steps, departures, generator):
-        asked.append((dancer, departures, torch.rand(1, generator=generator).item()))
+    def made(network, positions, known, *, samples, steps, generator, steer=None):
+        asked.append((network, steer, torch.rand(1, generator=generator).item()))
         whole = np.array(left.pop(0))
         hole = ~known.any(1)
-        whole[hole] *= 1.0 if departures.bones else 1.1
-        whole[hole] += [0.0, 0.0, 0.01 if dancer == "inbetweens" else 0.02]
-        whole[hole] += [0.0, 0.0, 0.0 if departures.guidance else 0.03]
+        whole[hole] *= 1.1
+        whole[hole] += [0.0, 0.0, 0.011 if network == "inbetweener" else 0.022]
+        whole[hole] += [0.0, 0.0, 0.033 if steer is departures.blend else 0.0]
         return np.stack([whole] * samples)
 
+    def finished(made, given, known, *, bones=True, feet=True, clearance=True):
+        corrections.append((bones, feet, clearance))
+        return np.where(known[..., None] | ~np.bool_(bones), made, made / 1.1)
+
+    class Filler(str):
+        def fill(self, *args, **how):
+            return made(self, *args, **how)
+
+    def ours(network, positions, known, **how):
+        return finished(made(network, positions, known, **how), positions, known)
+
     size = InbetweenSize(motions=2, samples=2)
-    truth = inbetween.trials(2)
+    truth, corrections = inbetween.trials(2), []
     left = [one for _ in departures.ROWS for one in truth]
-    networks = {name: (name, "digest") for name in ("inbetweens", "unconditional")}
-    monkeypatch.setattr(departures, "inbetween", made)
+    networks = {name: (Filler(name), "digest") for name in ("inbetweener", "unconditional")}
+    monkeypatch.setattr(departures, "inpaint", made)
+    monkeypatch.setattr(departures, "finished", finished)
+    rows = departures.ROWS | {
+        "ours": replace(departures.ROWS["ours"], fill=ours),
+        "paper": replace(departures.ROWS["paper"], fill=made),
+    }
+    monkeypatch.setattr(departures, "ROWS", rows)
     found = {
         one["name"].removeprefix("inbetween-departures."): one["value"]
         for one in departures.departure_records(networks, size, "a command")
     }
-    assert len(asked) == 2 * len(departures.ROWS)
-    for k, row in enumerate(departures.ROWS.values()):
-        one, other = asked[2 * k : 2 * k + 2]
-        assert one[:2] == other[:2] == (row.network, row.departures)
+    each = [asked[2 * k : 2 * k + 2] for k in range(len(rows))]
+    assert len(asked) == 2 * len(rows)
+    for row, (one, other) in zip(rows.values(), each, strict=True):
+        assert one[:2] == other[:2] and one[0] == row.network
         assert [one[2], other[2]] == [noise for _, _, noise in asked[:2]]
+    steers = [one[1] for one, _ in each]
+    assert steers[:4] == [None] * 4 and steers[-1] is None
+    assert steers[4:7] == [departures.guide_and_blend, departures.blend, departures.guide]
+    left_out = [
+        name for one in corrections[::2] for name, on in zip("bfc", one, strict=True) if not on
+    ]
+    assert left_out == ["b", "f", "c"] and len(corrections) == 2 * (len(rows) - 1)
     assert found["ours.error_one_cm"] == pytest.approx(1.0)
     assert found["not-shown.error_one_cm"] == pytest.approx(2.0)
     assert found["not-shown.error_one_minus_base_cm"] == pytest.approx(1.0)
@@ -200,5 +227,19 @@ def test_departures_are_measured_on_the_same_noise_one_left_out_at_a_time(monkey
     tenth = 0.1 * np.sqrt((lengths**2).mean())
     assert found["no-bones.bone_rmse_cm"] == pytest.approx(tenth, rel=0.01)
     assert found["ours.bone_rmse_cm"] < 0.01 < found["paper.bone_rmse_cm"]
-    rows = departures.ROWS.values()
-    assert len({(row.network, row.departures) for row in rows}) == len(rows)
+
+
+def test_the_rows_of_departures_run_and_differ(truth):
+    """On small networks: no two rows fill a gap alike."""
+    networks = {"inbetweener": small_inbetweener(activity=True), "unconditional": dancer_of_bands()}
+    known = middle(departures.GAP)
+    made = [
+        row.fill(
+            networks[row.network], truth[0], known, samples=1, steps=3,
+            generator=torch.Generator().manual_seed(0),
+        )
+        for row in departures.ROWS.values()
+    ]  # fmt: skip
+    for k, one in enumerate(made):
+        assert np.array_equal(one[0][known], truth[0][known])
+        assert not any(np.array_equal(one, other) for other in made[:k])

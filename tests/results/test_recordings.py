@@ -3,6 +3,7 @@
 import shutil
 import warnings
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.metrics.keyframes import unknown_error
 from motiondiff_edu.motion.bvh.write import write_bvh
-from motiondiff_edu.recipes.dancers import INBETWEENS
+from motiondiff_edu.recipes.inbetweener import INBETWEENER
 from tools.results import __main__ as results
 from tools.results.recordings import (
     continuations,
@@ -149,8 +150,9 @@ def test_a_glide_that_another_draw_mends_counts_as_drawn_again(monkeypatch):
     truth, known = walked.world(), keyframes(120, 20)
     glide = np.tile(truth[:1], (120, 1, 1)) + (truth[:, :1] - truth[:1, :1]) * [1, 0, 1]
     draws = iter([np.stack([truth, glide]), truth[None]])
-    monkeypatch.setattr(inbetweens, "inbetween", lambda *_, **__: next(draws))
-    one = inbetweens.filled(None, md.Motion(truth, 20.0), known, 2)
+    monkeypatch.setattr(inbetweens, "finished", lambda made, *_: made)
+    filler = SimpleNamespace(fill=lambda *_, **__: next(draws))
+    one = inbetweens.filled(filler, md.Motion(truth, 20.0), known, 2)
     assert one.again.tolist() == [False, True] and np.array_equal(one.made[1], truth)
 
 
@@ -167,8 +169,8 @@ def test_intervals_are_over_persons():
 
 def test_in_betweens_of_windows_are_measured_and_stand_in_the_page(folder, monkeypatch):
     monkeypatch.setattr(inbetweens, "STEPS", 2)
-    dancer = md.load("unconditional")
-    made = inbetweens.inbetween_records(dancer, "0", QUICK, "python -m x")
+    inbetweener = md.load("inbetweener")
+    made = inbetweens.inbetween_records(inbetweener, "0", QUICK, "python -m x")
     records = {one["name"]: one for one in made}
     assert records["real.inbetween_over_interpolation"]["value"] > 0
     assert records["real.gap40.inbetween_one_over_interpolation"]["seeds"]["windows"] == 2
@@ -179,8 +181,8 @@ def test_in_betweens_of_windows_are_measured_and_stand_in_the_page(folder, monke
 
 
 def test_on_all_cores_the_numbers_are_the_same(folder):
-    dancer, windows = md.load("unconditional"), inbetweens.windows_and_walks(QUICK)[0]
-    tasks = [(dancer, motion, 10, 1) for _, motion in windows[:2]]
+    inbetweener, windows = md.load("inbetweener"), inbetweens.windows_and_walks(QUICK)[0]
+    tasks = [(inbetweener, motion, 10, 1) for _, motion in windows[:2]]
     assert inbetweens.on_all_cores(tasks) == inbetweens.in_turn(tasks)
 
 
@@ -217,7 +219,7 @@ def test_a_variant_is_trained_measured_and_stands_in_the_page(folder, tmp_path, 
     monkeypatch.setattr(inbetweens, "STEPS", 2)
     (folder / "cmu30").mkdir()
     shutil.copy(folder / "bvh" / "walk0.bvh", folder / "cmu30" / "acrnn_x.bvh")
-    sizes = replace(INBETWEENS.config, S=20, widths=(16, 24), heads=2)
+    sizes = replace(INBETWEENER.config, S=20, widths=(16, 24), heads=2)
     budget = replace(
         trainings.QUICK, training=trainings.QUICK.training | {"config": sizes, "batch": 2}
     )

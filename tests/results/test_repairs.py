@@ -228,7 +228,7 @@ def test_both_papers_repairs_are_scored_where_both_had_to_guess(trials, monkeypa
     monkeypatch.setattr(
         both,
         "masked",
-        lambda dancer, world, known, n, departures=None: (world + 5 / 3 * side)[None],
+        lambda dancer, world, known, n, fill=None: (world + 5 / 3 * side)[None],
     )
     found = {one.name: one.value for one in both.both_measures(None, None, trials, repair.QUICK)}
     assert (

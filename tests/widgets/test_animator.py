@@ -9,14 +9,15 @@ from browser import open_page
 from jupyter_page import ASK, lab, run_all  # noqa: F401
 
 CELL = """import sys; sys.path.insert(0, {tests!r})
+from functools import partial
 import numpy as np
-from motiondiff_edu.editing.inbetween import maker
+from motiondiff_edu.editing.inbetween import inbetween
 from motiondiff_edu.motion.retarget import load_clip
 from motiondiff_edu.motion.skeleton import JOINTS
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.widgets.editor import Editor
 walk = load_clip("WALK").world()[:57]
-editor = Editor(walk, maker(checkpoints.pretrained("unconditional"), steps=10))
+editor = Editor(walk, partial(inbetween, checkpoints.pretrained("inbetweener"), steps=10))
 editor"""
 ROOT = "document.querySelector('.mde-editor').dataset"
 CHECK = """

@@ -212,7 +212,7 @@ def records_of(
         return mend.records(bench, repair.QUICK if quick else repair.FULL, command)
     if part in ("inbetween", "inbetween-departures"):
         networks = {
-            name: (stage.dancer(name), weights_digest(stage.weights[name]))
+            name: (checkpoints.load(stage.weights[name]), weights_digest(stage.weights[name]))
             for name in (FILLS_IN, MASKED)
         }
         size = inbetween.QUICK if quick else inbetween.FULL
@@ -231,7 +231,7 @@ def records_of(
         return [*continuations.recorded_records(*measured), *persons.person_records(*measured)]
     if part == "recordings-inbetweens":
         return recorded_inbetweens.inbetween_records(
-            stage.dancer(FILLS_IN),
+            checkpoints.load(stage.weights[FILLS_IN]),
             weights_digest(stage.weights[FILLS_IN]),
             recorded.QUICK if quick else recorded.FULL,
             command,

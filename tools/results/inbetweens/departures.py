@@ -1,22 +1,26 @@
 """What each departure from masked sampling gains: all of them, then all but one.
 
-A network that is shown what is given needs no guidance and no blending. So what these gain is
-measured on the network that is not shown it. The gaps, motions and noise are the same for every
-row.
+An in-betweener is shown what is given, and needs no guidance and no blending. So what these gain
+is measured on the dancer without music, which is not shown it. The gaps, motions and noise are the
+same for every row.
 Source: MoFusion 4.4, and `motiondiff_edu.beyond`.  Notebook: 15
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 import torch
 from jaxtyping import Bool, Float
 
-from motiondiff_edu.editing.inbetween import OURS, PAPER, Departures, inbetween
+from motiondiff_edu.beyond.guidance import guided
+from motiondiff_edu.editing.inbetween import finished, inbetween
+from motiondiff_edu.editing.inpaint import WEIGHT, Steer, blend, guide_and_blend, inpaint
 from motiondiff_edu.metrics.bone_lengths import bone_lengths
 from motiondiff_edu.metrics.keyframes import seam_jump, unknown_error
 from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.performers.dancer import Dancer
+from motiondiff_edu.performers.inbetweener import Inbetweener
 
 from ..walks.scores import Measure, measure_of, ratio, root_mean
 from ..walks.trials import UNSEEN
@@ -24,51 +28,79 @@ from .inbetween import InbetweenSize, middle, trials
 
 GAP = 30  # frames
 
-SHOWN, NOT_SHOWN = "inbetweens", "unconditional"  # the networks' names
+SHOWN, NOT_SHOWN = "inbetweener", "unconditional"  # the networks' names
+# (network, positions, known, samples=, steps=, generator=)
+Fill = Callable[..., Float[np.ndarray, "S T J 3"]]
+
+
+def without(correction: str) -> Fill:
+    """`inbetween` without one correction of `finished`."""
+
+    def fill(network: Inbetweener, positions, known, *, samples, steps, generator):
+        made = network.fill(positions, known, samples=samples, steps=steps, generator=generator)
+        return finished(made, positions, known, **{correction: False})
+
+    return fill
+
+
+def masked(steer: Steer) -> Fill:
+    """Masked sampling with a steered denoiser, and all corrections."""
+
+    def fill(network: Dancer, positions, known, *, samples, steps, generator):
+        how = {"samples": samples, "steps": steps, "generator": generator}
+        made = inpaint(network, positions, known, steer=steer, **how)
+        return finished(made, positions, known)
+
+    return fill
+
+
+def guide(denoise, schedule, given, known):
+    """The guidance of `guide_and_blend` alone."""
+    return guided(denoise, schedule, given, known, WEIGHT)
 
 
 @dataclass(frozen=True)
 class Row:
-    """What a row is in words, its departures, its network, and the row that it departs from."""
+    """What a row is in words, how it fills in, its network, and the row that it departs from."""
 
     words: str
-    departures: Departures
+    fill: Fill
     network: str = SHOWN
     base: str = "ours"
 
 
 ROWS = {
-    "ours": Row("all departures", OURS),
-    "no-bones": Row("bones may change their length", replace(OURS, bones=False)),
-    "no-feet": Row("feet may slide", replace(OURS, feet=False)),
-    "no-clearance": Row("feet at any height", replace(OURS, clearance=False)),
-    "not-shown": Row("a network that is not shown what is given", OURS, NOT_SHOWN),
-    "no-guidance": Row(
-        "the same, no guidance", replace(OURS, guidance=0.0), NOT_SHOWN, "not-shown"
+    "ours": Row("all departures", inbetween),
+    "no-bones": Row("bones may change their length", without("bones")),
+    "no-feet": Row("feet may slide", without("feet")),
+    "no-clearance": Row("feet at any height", without("clearance")),
+    "not-shown": Row(
+        "a network that is not shown what is given", masked(guide_and_blend), NOT_SHOWN
     ),
-    "no-blending": Row("the same, no blending", replace(OURS, blend=None), NOT_SHOWN, "not-shown"),
-    "paper": Row("none of them: masked sampling", PAPER, NOT_SHOWN),
+    "no-guidance": Row("the same, no guidance", masked(blend), NOT_SHOWN, "not-shown"),
+    "no-blending": Row("the same, no blending", masked(guide), NOT_SHOWN, "not-shown"),
+    "paper": Row("none of them: masked sampling", inpaint, NOT_SHOWN),
 }
 
 
 def departure_records(
-    networks: dict[str, tuple[Dancer, str]], size: InbetweenSize, command: str
+    networks: dict[str, tuple[Inbetweener | Dancer, str]], size: InbetweenSize, command: str
 ) -> list[dict]:
     """The measures of every row, and those minus the row that it departs from.
 
-    `networks` has each network's dancer and the digest of its weights.
+    `networks` has each network and the digest of its weights.
     """
     truth, known = trials(size.motions), middle(GAP)
     seeds = {"data": UNSEEN, "motions": size.motions, "samples": size.samples}
     seeds |= {"steps": size.steps, "gap": GAP}
     rows, records = {}, []
     for name, row in ROWS.items():
-        dancer, weights = networks[row.network]
+        network, weights = networks[row.network]
         draw = torch.Generator().manual_seed(GAP)
         made = [
-            inbetween(
-                dancer, np.where(known[..., None], one, np.nan), known, samples=size.samples,
-                steps=size.steps, departures=row.departures, generator=draw,
+            row.fill(
+                network, np.where(known[..., None], one, np.nan), known, samples=size.samples,
+                steps=size.steps, generator=draw,
             )
             for one in truth
         ]  # fmt: skip

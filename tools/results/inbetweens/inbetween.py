@@ -2,8 +2,8 @@
 
 They are compared with interpolation and with sampling without a mask.
 
-The network of `md.inbetween` is shown what is given (`editing.inbetween.inbetween`). The paper's
-masked sampling, of the network that knows nothing of it, is measured as well.
+The network of `md.inbetween` is shown what is given (`performers.inbetweener`). The paper's masked
+sampling, of the network that knows nothing of it, is measured as well.
 Source: MoFusion 4.4; what is measured, `metrics.keyframes`.  Notebook: 15
 """
 
@@ -16,12 +16,14 @@ from jaxtyping import Bool, Float
 
 from data_synth.mixed import motions
 from motiondiff_edu.baselines.interpolation import linear, spherical
-from motiondiff_edu.editing.inbetween import PAPER, inbetween
+from motiondiff_edu.editing.inbetween import inbetween
+from motiondiff_edu.editing.inpaint import inpaint
 from motiondiff_edu.editing.masks import gap
 from motiondiff_edu.metrics.keyframes import keyframe_error, npss_parts, seam_jump, unknown_error
 from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.motion.dance_frame import at_origin
 from motiondiff_edu.performers.dancer import Dancer
+from motiondiff_edu.performers.inbetweener import Inbetweener
 
 from ..walks.scores import Measure, measure_of, ratio
 from ..walks.trials import UNSEEN
@@ -74,7 +76,7 @@ class Filled:
 
 
 def filled(
-    shown: Dancer,
+    shown: Inbetweener,
     masked: Dancer,
     truth: Float[np.ndarray, "N T J 3"],
     length: int,
@@ -88,8 +90,8 @@ def filled(
     options = {"steps": size.steps, "generator": draw}
     holes = np.where(known[..., None], truth, np.nan)
     made = [inbetween(shown, one, known, samples=size.samples, **options) for one in holes]
-    paper = [inbetween(masked, one, known, departures=PAPER, **options)[0] for one in holes]
-    free = [inbetween(masked, one, np.zeros_like(known), **options)[0] for one in truth]
+    paper = [inpaint(masked, one, known, **options)[0] for one in holes]
+    free = [inpaint(masked, one, np.zeros_like(known), **options)[0] for one in truth]
     flat = [[fill(one, known) for one in truth] for fill in (linear, spherical)]
     return Filled(known, truth, np.stack(made, 1), *map(np.stack, (paper, free, *flat)))
 
@@ -184,14 +186,14 @@ def ratio_of_sums(above: np.ndarray, below: np.ndarray) -> float:
 
 
 def inbetween_records(
-    shown: tuple[Dancer, str], masked: tuple[Dancer, str], size: InbetweenSize, command: str
+    shown: tuple[Inbetweener, str], masked: tuple[Dancer, str], size: InbetweenSize, command: str
 ) -> list[dict]:
     """The records of all gaps; the worst spectrum and seam also have their own names.
 
     Each network with the digest of its weights.
     """
     truth = trials(size.motions)
-    (dancer, weights), (paper, paper_weights) = shown, masked
+    (ours, weights), (paper, paper_weights) = shown, masked
     seeds = {"data": UNSEEN, "motions": size.motions, "samples": size.samples, "weights": weights}
     seeds |= {"masked": paper_weights}
     seeds |= {"steps": size.steps}
@@ -199,7 +201,7 @@ def inbetween_records(
     for length in GAPS:
         every[length] = {
             measure.name: measure
-            for measure in measures_of(filled(dancer, paper, truth, length, size))
+            for measure in measures_of(filled(ours, paper, truth, length, size))
         }
         records += [
             f.as_record(f"inbetween.gap{length}.", seeds, command) for f in every[length].values()

@@ -1,6 +1,6 @@
 """In-betweens of recordings: a keyframe a second, and closer and wider ones.
 
-Each window is filled in `samples` times: as `editing.inbetween` does it, and as `md.inbetween` does
+Each window is filled in `samples` times: before second tries, and as `md.inbetween` does
 it, which notices failures and tries again. They are compared with the better of straight lines and
 arcs. Intervals are over persons.
 """
@@ -16,14 +16,14 @@ import torch
 from jaxtyping import Bool, Float
 
 from motiondiff_edu.baselines.interpolation import linear, spherical
-from motiondiff_edu.editing.inbetween import OURS, inbetween
+from motiondiff_edu.editing.inbetween import finished
 from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.editing.plausible import each_until_plausible
 from motiondiff_edu.metrics.keyframes import energy_score, unknown_error
 from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.motion.root_frame import FPS
-from motiondiff_edu.performers.dancer import STEPS, Dancer
+from motiondiff_edu.performers.inbetweener import STEPS, Inbetweener
 from motiondiff_edu.performers.performer import generators
 
 from ..walks.scores import SKATING_FLOOR, Measure
@@ -39,7 +39,7 @@ WALKS = (
     "cmu_003_02", "cmu_005_01", "cmu_12_01", "pymo_AV_8Walk",
 )  # fmt: skip
 
-Task = tuple[Dancer, Motion, int, int]  # who, what, frames between keyframes, samples
+Task = tuple[Inbetweener, Motion, int, int]  # who, what, frames between keyframes, samples
 Run = Callable[[Sequence[Task]], list[dict[str, float]]]
 
 
@@ -54,15 +54,17 @@ class Filled:
     arcs: Float[np.ndarray, "T J 3"]
 
 
-def filled(dancer: Dancer, motion: Motion, known: Bool[np.ndarray, "T J"], samples: int) -> Filled:
+def filled(
+    inbetweener: Inbetweener, motion: Motion, known: Bool[np.ndarray, "T J"], samples: int
+) -> Filled:
     """A window, filled in as `md.inbetween` does it."""
     truth, draws = motion.positions, generators(0, samples)
 
-    def generate(some, departures):
-        how = {"steps": STEPS, "departures": departures}
-        return inbetween(dancer, truth, known, samples=len(some), generator=some, **how)
+    def generate(some, remainder):
+        how = {"samples": len(some), "steps": STEPS, "remainder": remainder, "generator": some}
+        return finished(inbetweener.fill(truth, known, **how), truth, known)
 
-    raw = list(generate(draws, OURS))
+    raw = list(generate(draws, 1.0))
     made, notes = zip(*each_until_plausible(raw, draws, truth, known, generate), strict=True)
     again = [
         bool(note) or one is not first for one, note, first in zip(made, notes, raw, strict=True)
@@ -135,9 +137,9 @@ def high(values: Float[np.ndarray, "N"]) -> float:
 
 def measured_alone(task: Task) -> dict[str, float]:
     """What is measured of one window."""
-    dancer, motion, every, samples = task
+    inbetweener, motion, every, samples = task
     known = keyframes(len(motion), every)
-    return row_of(filled(dancer, motion, known, samples), motion.positions, known)
+    return row_of(filled(inbetweener, motion, known, samples), motion.positions, known)
 
 
 def in_turn(tasks: Sequence[Task]) -> list[dict[str, float]]:
@@ -152,7 +154,7 @@ def on_all_cores(tasks: Sequence[Task]) -> list[dict[str, float]]:
 
 
 def inbetween_records(
-    dancer: Dancer, weights: str, size: RecordedSize, command: str, run: Run = in_turn
+    inbetweener: Inbetweener, weights: str, size: RecordedSize, command: str, run: Run = in_turn
 ) -> list[dict]:
     """The measures of in-betweens (`real.inbetween_*`), at other distances `real.gapN.`."""
     windows, walks = windows_and_walks(size)
@@ -160,7 +162,7 @@ def inbetween_records(
     seeds = {"windows": len(windows)} | amounts(sources) | {"sampling": 0, "steps": STEPS}
     seeds |= {"samples": size.samples, "weights": weights, "walks": int(walks.sum())}
     tasks = [
-        (dancer, motion, every, size.samples)
+        (inbetweener, motion, every, size.samples)
         for every in (SECOND, *OTHERS)
         for _, motion in windows
     ]
@@ -184,7 +186,7 @@ def windows_and_walks(
 
 
 def rows_of(
-    dancer: Dancer, windows: list[tuple[str, Motion]], every: int, samples: int
+    inbetweener: Inbetweener, windows: list[tuple[str, Motion]], every: int, samples: int
 ) -> list[dict[str, float]]:
     """What is measured of each window, with keyframes every so many frames."""
-    return in_turn([(dancer, motion, every, samples) for _, motion in windows])
+    return in_turn([(inbetweener, motion, every, samples) for _, motion in windows])

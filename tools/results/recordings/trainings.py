@@ -1,6 +1,6 @@
 """What recordings and variations in training are worth for in-betweens: trainings of equal length.
 
-Each row differs from the recipe `inbetweens` in one choice, or in the choices that its words name.
+Each row differs from the recipe `inbetweener` in one choice, or in the choices that its words name.
 It is trained with three seeds, for 800 of the recipe's 10,000 steps. All are judged on recordings
 of people whom none has seen, with a keyframe a second.
 """
@@ -10,9 +10,8 @@ from functools import partial
 from pathlib import Path
 
 from motiondiff_edu._files import digest_of_tensors
-from motiondiff_edu.performers.dancer import STEPS, Dancer
-from motiondiff_edu.recipes.dancers import INBETWEENS, KeyframeRecipe
-from motiondiff_edu.recipes.train_dancer import train_dancer
+from motiondiff_edu.performers.inbetweener import STEPS, Inbetweener
+from motiondiff_edu.recipes.inbetweener import INBETWEENER, InbetweenerRecipe, train_inbetweener
 
 from ..walks.scores import Measure
 from ..words.budget import over_trainings
@@ -25,11 +24,11 @@ VARIANTS: dict[str, tuple[str, dict]] = {
     "no-recordings": ("no recordings in training", {"recordings": 0}),
     "no-activity": (
         "scales do not know how much the figure moves (`beyond/activity.py`)",
-        {"config": replace(INBETWEENS.config, activity=False)},
+        {"config": replace(INBETWEENER.config, activity=False)},
     ),
     "no-turning": (
         "poses are seen in the heading of the first one (`beyond/turning_frame.py`)",
-        {"config": replace(INBETWEENS.config, turning=False)},
+        {"config": replace(INBETWEENER.config, turning=False)},
     ),
     "no-variations": (
         "no other limbs, pelvises, upper bodies and levels, no stages; other paces for recordings "
@@ -59,20 +58,20 @@ QUICK = Budget(
 )
 
 
-def recipe_of(name: str, seed: int, budget: Budget) -> KeyframeRecipe:
+def recipe_of(name: str, seed: int, budget: Budget) -> InbetweenerRecipe:
     """The training of one variant with one seed."""
     settings = {"name": f"inbetween-budget.{name}", "seed": seed}
-    return replace(INBETWEENS, **settings, **budget.training | VARIANTS[name][1])
+    return replace(INBETWEENER, **settings, **budget.training | VARIANTS[name][1])
 
 
-def trained(name: str, seed: int, budget: Budget, runs: Path) -> Dancer:
+def trained(name: str, seed: int, budget: Budget, runs: Path) -> Inbetweener:
     """The network of a variant.
 
     A run that was killed continues; one that is finished is only read.
     """
     runs.mkdir(parents=True, exist_ok=True)
     run = runs / f"{name}-{seed}.safetensors"
-    return train_dancer(recipe_of(name, seed, budget), run, log=partial(print, flush=True))
+    return train_inbetweener(recipe_of(name, seed, budget), run, log=partial(print, flush=True))
 
 
 def budget_records(name: str, budget: Budget, runs: Path, command: str) -> list[dict]:
@@ -82,17 +81,17 @@ def budget_records(name: str, budget: Budget, runs: Path, command: str) -> list[
     """
     found, weights = [], []
     for seed in budget.seeds:
-        dancer = trained(name, seed, budget, runs)
-        weights.append(digest_of_tensors(dancer.model.state_dict())[:16])
-        found.append(measured(dancer, budget.size))
+        inbetweener = trained(name, seed, budget, runs)
+        weights.append(digest_of_tensors(inbetweener.model.state_dict())[:16])
+        found.append(measured(inbetweener, budget.size))
     about = {"trainings": list(budget.seeds), "trained_steps": recipe_of(name, 0, budget).steps}
     about |= {"samples": budget.size.samples, "steps": STEPS, "weights": weights}
     measures = over_trainings(found)
     return [one.as_record(f"inbetween-budget.{name}.", about, command) for one in measures]
 
 
-def measured(dancer: Dancer, size: RecordedSize) -> list[Measure]:
+def measured(inbetweener: Inbetweener, size: RecordedSize) -> list[Measure]:
     """The measures of one training."""
     windows, walks = windows_and_walks(size)
-    rows = rows_of(dancer, windows, SECOND, size.samples)
+    rows = rows_of(inbetweener, windows, SECOND, size.samples)
     return measures_of(rows, walks, [source for source, _ in windows])

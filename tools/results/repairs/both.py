@@ -15,7 +15,7 @@ import torch
 from jaxtyping import Bool, Float
 
 from motiondiff_edu.beyond.back_with_known import masked_way_back
-from motiondiff_edu.editing.inbetween import OURS, PAPER, Departures, inbetween
+from motiondiff_edu.editing.inpaint import guide_and_blend, inpaint
 from motiondiff_edu.motion.root_frame import to_world
 from motiondiff_edu.motion.skeleton import HIPS, J
 from motiondiff_edu.performers.dancer import Dancer
@@ -23,6 +23,8 @@ from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.reconstruction import plain_way_back
 
+from ..inbetweens.departures import Fill
+from ..inbetweens.departures import masked as masked_and_corrected
 from ..walks.parts import Bench, weights_digest
 from ..walks.scores import Measure, measure_of
 from ..walks.trials import UNSEEN, Trials
@@ -58,13 +60,13 @@ def masked(
     world: Float[np.ndarray, "N W J 3"],
     known: Bool[np.ndarray, "N W J"],
     samples: int,
-    departures: Departures = OURS,
+    fill: Fill = inpaint,
 ) -> Float[np.ndarray, "samples N W J 3"]:
-    """So many repairs of each of `masked_window`'s pasts by masked sampling."""
+    """So many repairs of each of `masked_window`'s pasts by masked sampling, or `fill`."""
     draw = torch.Generator().manual_seed(0)
     holes = np.where(known[..., None], world, np.nan)
-    options = {"samples": samples, "steps": 25, "generator": draw, "departures": departures}
-    made = [inbetween(dancer, one, seen, **options) for one, seen in zip(holes, known, strict=True)]
+    options = {"samples": samples, "steps": 25, "generator": draw}
+    made = [fill(dancer, one, seen, **options) for one, seen in zip(holes, known, strict=True)]
     return np.stack(made, 1)
 
 
@@ -72,7 +74,7 @@ def both_measures(
     walker: Walker, dancer: Dancer, trials: Trials, size: RepairSize
 ) -> list[Measure]:
     """For each fault and way: the error of the mean of the repairs, and of one of them, cm."""
-    few = trials.first(CLIPS)
+    few, corrected = trials.first(CLIPS), masked_and_corrected(guide_and_blend)
     found = []
     for fault, break_it in FAULTS.items():
         broken = break_it(few.past)
@@ -86,11 +88,11 @@ def both_measures(
                 few.past,
             ),
             "masked": (
-                masked(dancer, world, known, size.samples, PAPER)[:, :, :T_h],
+                masked(dancer, world, known, size.samples)[:, :, :T_h],
                 world[:, :T_h],
             ),
             "masked_blended": (
-                masked(dancer, world, known, size.samples)[:, :, :T_h],
+                masked(dancer, world, known, size.samples, corrected)[:, :, :T_h],
                 world[:, :T_h],
             ),
         }

@@ -144,7 +144,7 @@ def inbetweens(records: dict[str, dict], folder: Path) -> str:
         "## In-betweens (MoFusion 4.4)\n\nA network fills a gap in the middle of "
         f"{seeds['motions']} unseen motions of 100 frames, half of them walks and half dances. "
         f"There are {seeds['samples']} samples of each, with {seeds['steps']} DDIM steps. Ours "
-        "(`inbetweens`) is shown what is given and generates the remainder around straight lines; "
+        "(`inbetweener`) is shown what is given and generates the remainder around straight lines; "
         "at the end bones keep their lengths, and feet are locked. Columns that say *masked* "
         "show one sample as in the paper, of the network `unconditional` that knows nothing of "
         "what is given. The mean of several samples has a smaller "

@@ -7,31 +7,33 @@ import pytest
 import torch
 
 from data_synth.mixed import motions, sentences
-from motiondiff_edu.beyond.around_lines import Shown
-from motiondiff_edu.beyond.turning_frame import View
-from motiondiff_edu.ddpm import q_sample
+from motiondiff_edu.beyond.around_lines import GivenLines
+from motiondiff_edu.beyond.schedules import shifted
+from motiondiff_edu.beyond.turning_frame import TurningFrame
+from motiondiff_edu.ddpm import cosine_schedule, q_sample
 from motiondiff_edu.editing.inbetween import inbetween
 from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.motion import dance_frame
 from motiondiff_edu.motion.skeleton import HIPS, J, joint_index
 from motiondiff_edu.performers.dance_windows import DanceWindows
-from motiondiff_edu.performers.keyframe_mofusion import KeyframeConfig, KeyframeMoFusion
+from motiondiff_edu.performers.inbetweener import KeyframeConfig, KeyframeMoFusion
 from motiondiff_edu.prediction import to_x0
-from motiondiff_edu.recipes import keyframe_loss
-from motiondiff_edu.recipes.dancers import INBETWEENS
+from motiondiff_edu.recipes import inbetweener
 from motiondiff_edu.recipes.drawn_masks import SHARES, drawn_mask, drawn_masks
-from motiondiff_edu.recipes.keyframe_loss import as_seen, body_around
-from motiondiff_edu.recipes.train_dancer import (
+from motiondiff_edu.recipes.inbetweener import (
+    INBETWEENER,
+    as_seen,
+    body_around,
     loss_of,
     scaler_of_turning,
-    schedule_of,
-    train_dancer,
+    train_inbetweener,
     with_path_scale,
 )
 
 T = 32
 SMALL = KeyframeConfig(S=60, widths=(16, 24), heads=2)
-RECIPE = replace(INBETWEENS, config=SMALL, steps=3, batch=4, frames=T)
+SCHEDULE = cosine_schedule(60)
+RECIPE = replace(INBETWEENER, config=SMALL, steps=3, batch=4, frames=T)
 
 
 def seeded(seed: int = 0) -> torch.Generator:
@@ -99,41 +101,40 @@ def test_motions_are_seen_from_their_first_given_pose_and_resized(windows):
 
 @pytest.mark.parametrize(("target", "turning"), [("x0", False), ("v", False), ("v", True)])
 def test_the_loss_of_a_batch_is_eq_4_of_what_remains_without_the_lines(windows, target, turning):
-    """Errors are those of x0, whatever the network predicts, and in whatever view."""
+    """Errors are those of x0, whatever the network predicts, and in whatever frame."""
     config = replace(SMALL, target=target, turning=turning)
     recipe = replace(RECIPE, config=config, kinematic=None, sizes=0.0, stages=0.0)
     recipe = replace(recipe, loss_weights=type(RECIPE.loss_weights)())
-    schedule = schedule_of(recipe)
     torch.manual_seed(0)
     model, asked = KeyframeMoFusion(config), []
     forward = model.forward
 
-    def watched(r_s, s, shown=None):
-        asked.append((r_s, s, shown, forward(r_s, s, shown)))
+    def watched(r_s, s, lines):
+        asked.append((r_s, s, lines, forward(r_s, s, lines)))
         return asked[-1][-1]
 
     model.forward = watched
-    loss = loss_of(recipe, windows, schedule)(model, seeded(5))
-    ((r_s, s, shown, output),) = asked
-    r0_hat = to_x0(output, r_s, s, schedule, target)
+    loss = loss_of(recipe, windows, SCHEDULE)(model, seeded(5))
+    ((r_s, s, lines, output),) = asked
+    r0_hat = to_x0(output, r_s, s, SCHEDULE, target)
     generator = seeded(5)
     motion, _, _ = windows.draw(4, generator)
     known = drawn_masks(4, T, generator)
     torch.rand(12, generator=generator)  # sizes, who stands on a stage, and how high
     scaler = windows.motion_scaler
     seen = as_seen(scaler.inverse(motion), known, torch.ones(4), torch.zeros(4))
-    view = View.of(seen, known) if turning else View.none(seen)
-    seen = scaler.transform(view.enter(seen))
+    frame = TurningFrame.of(seen, known) if turning else TurningFrame.none(seen)
+    seen = scaler.transform(frame.enter(seen))
     columns = known.repeat_interleave(3, -1)
-    wanted = Shown.of(seen, columns, view)
+    wanted = GivenLines.of(seen, columns, frame)
     r0 = wanted.remainder(seen)
-    assert all(torch.equal(getattr(shown, k), getattr(wanted, k)) for k in ("lines", "known"))
-    steps = torch.randint(1, schedule.S + 1, (4,), generator=generator)
+    assert all(torch.equal(getattr(lines, k), getattr(wanted, k)) for k in ("lines", "known"))
+    steps = torch.randint(1, SCHEDULE.S + 1, (4,), generator=generator)
     eps = torch.randn(r0.shape, generator=generator)
     assert torch.equal(s, steps)
-    torch.testing.assert_close(r_s, q_sample(r0, steps, schedule, eps))
-    errors = ((shown.whole(r0_hat) - seen).where(~columns, 0.0)).square().mean((1, 2))
-    torch.testing.assert_close(loss, (errors / shown.scale.square().mean((1, 2))).mean())
+    torch.testing.assert_close(r_s, q_sample(r0, steps, SCHEDULE, eps))
+    errors = ((lines.whole(r0_hat) - seen).where(~columns, 0.0)).square().mean((1, 2))
+    torch.testing.assert_close(loss, (errors / lines.scale.square().mean((1, 2))).mean())
 
 
 def test_some_motions_stand_on_stages_but_none_of_which_nothing_is_given(windows, monkeypatch):
@@ -143,9 +144,9 @@ def test_some_motions_stand_on_stages_but_none_of_which_nothing_is_given(windows
         asked.append((known, heights))
         return as_seen(motion, known, sizes, heights)
 
-    monkeypatch.setattr(keyframe_loss, "as_seen", watched)
+    monkeypatch.setattr(inbetweener, "as_seen", watched)
     recipe = replace(RECIPE, batch=300, stages=0.5)
-    loss_of(recipe, windows, schedule_of(recipe))(KeyframeMoFusion(SMALL), seeded(1))
+    loss_of(recipe, windows, SCHEDULE)(KeyframeMoFusion(SMALL), seeded(1))
     ((known, heights),) = asked
     given = known.flatten(1).any(1)
     assert (heights[~given] == 0).all() and not given.all()
@@ -155,10 +156,10 @@ def test_some_motions_stand_on_stages_but_none_of_which_nothing_is_given(windows
 
 def test_bones_are_those_of_lines_and_remainder_together(windows):
     motion, _, _ = windows.draw(2, seeded())
-    shown = Shown.of(motion, torch.rand(motion.shape, generator=seeded()) < 0.2)
-    body = body_around(shown, windows.motion_scaler)
+    lines = GivenLines.of(motion, torch.rand(motion.shape, generator=seeded()) < 0.2)
+    body = body_around(lines, windows.motion_scaler)
     wanted = dance_frame.body_of(windows.motion_scaler).to_positions(motion)
-    made = body.to_positions(shown.remainder(motion))
+    made = body.to_positions(lines.remainder(motion))
     torch.testing.assert_close(made, wanted, atol=1e-4, rtol=1e-4)
 
 
@@ -166,10 +167,10 @@ def test_bones_are_those_of_the_world_in_a_view_too(windows):
     motion, _, _ = windows.draw(2, seeded())
     scaler, known = windows.motion_scaler, drawn_masks(2, T, seeded(3))
     features = scaler.inverse(motion)
-    view = View.of(features, known)
-    inside = scaler.transform(view.enter(features))
-    shown = Shown.of(inside, known.repeat_interleave(3, -1), view)
-    made = body_around(shown, scaler).to_positions(shown.remainder(inside))
+    frame = TurningFrame.of(features, known)
+    inside = scaler.transform(frame.enter(features))
+    lines = GivenLines.of(inside, known.repeat_interleave(3, -1), frame)
+    made = body_around(lines, scaler).to_positions(lines.remainder(inside))
     torch.testing.assert_close(made, dance_frame.to_positions(features), atol=1e-4, rtol=1e-4)
 
 
@@ -192,14 +193,16 @@ def test_a_path_is_measured_in_metres_of_the_recipe_and_motions_stay_the_same(wi
 
 
 def test_a_network_is_trained_and_fills_in(windows, tmp_path):
-    dancer = train_dancer(RECIPE, tmp_path / "run.safetensors", windows, log=lambda _: None)
-    assert dancer.can_be_shown and dancer.card["recipe"]["sizes"] == 0.1
+    made_by = train_inbetweener(RECIPE, tmp_path / "run.safetensors", windows, log=lambda _: None)
+    assert made_by.card["recipe"]["sizes"] == 0.1 and made_by.card["windows"] == len(windows)
+    wanted = shifted(SCHEDULE, RECIPE.snr).alpha_bar
+    assert RECIPE.snr == 0.3 and torch.equal(made_by.schedule.alpha_bar, wanted)
     truth = (
         dance_frame.to_positions(windows.motion_scaler.inverse(windows.draw(1, seeded())[0]))[0]
         .double()
         .numpy()
     )
     known = keyframes(T, 10)
-    made = inbetween(dancer, truth, known, samples=2, steps=3, generator=seeded())
+    made = inbetween(made_by, truth, known, samples=2, steps=3, generator=seeded())
     assert np.array_equal(made[:, known], np.broadcast_to(truth[known], made[:, known].shape))
     assert np.isfinite(made).all() and np.abs(made[0] - made[1]).max() > 1e-3

@@ -1,0 +1,271 @@
+"""Train the in-betweener: its recipe, data, loss and card.
+
+It is shown what is given of a motion, and learns eq. 4 of the remainder around the lines. Every
+motion of a batch gets a mask of its own (`drawn_masks`). Kinematic losses are those of the whole
+motion, lines and remainder together. Errors are weighted as those of the whole motion, so that the
+middle of a gap counts more than its ends; and motions count alike, whatever is given. At every step
+they count as errors of x0, also where the network predicts v. A killed run continues from its last
+save.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+import torch
+from jaxtyping import Bool, Float
+from torch import Tensor, nn
+
+from ..beyond.around_lines import GivenLines
+from ..beyond.loss_terms import as_x0_errors, weighted, weighted_by_step
+from ..beyond.schedules import shifted
+from ..beyond.turning_frame import TurningFrame
+from ..ddpm import Schedule, cosine_schedule
+from ..kinematic_loss import Body, KinematicWeights
+from ..motion import dance_frame
+from ..motion.known import first_place
+from ..motion.scaler import Scaler
+from ..motion.skeleton import J
+from ..performers.dance_windows import FITTED, DanceWindows, toes_moved
+from ..performers.inbetweener import Inbetweener, KeyframeConfig
+from ..performers.networks import network
+from ..training import LossFn
+from .dancers import KINEMATIC, DanceLossWeights
+from .dancers import OURS as LOSS_WEIGHTS
+from .drawn_masks import drawn_masks, uniform
+from .mofusion_loss import batch_loss, weighted_loss
+from .recordings import CREDIT, Recorded, training_recordings
+from .train_dancer import bones_of, digest
+from .train_recipe import Provenance, train_recipe
+
+
+@dataclass(frozen=True)
+class InbetweenerRecipe:
+    """One training run of an in-betweener."""
+
+    name: str
+    config: KeyframeConfig
+    steps: int
+    kinematic: KinematicWeights | None = None
+    loss_weights: DanceLossWeights = DanceLossWeights()
+    snr: float = 1.0  # factor on the signal-to-noise ratio of the cosine schedule
+    frames: int = 100  # per window
+    lr: float = 3e-3
+    optimizer: str = "muon"
+    batch: int = 32
+    decay: float = 0.999
+    seconds: float = 20.0  # of each walk and dance
+    data_seed: int = 1
+    seed: int = 0
+    motions: int = 0  # so many walks and dances without music
+    acts: int = 0  # so many performed sentences beside the walks and dances
+    recordings: int = 0  # so many versions of each training recording, some of them unvaried
+    unvaried: float = 0.0  # share of the motions that stay as they were made
+    # of the others:
+    levels: float = 0.0  # share of the synthetic motions that are performed lower and leaning
+    paces: float = 0.0  # share of the synthetic motions whose pace changes, with pauses; that of
+    # every recording changes, but for its first version's
+    variations: float = 0.0  # share with limbs turned; with pelvis moved; with another upper body
+    path_scale: float = 0.3  # m: the unit of the pelvis' path (`with_path_scale`)
+    # of all, whenever they are drawn:
+    sizes: float = 0.0  # bodies are so much larger or smaller, at most (share)
+    stages: float = 0.0  # share of all motions that are higher than the floor, by up to a metre
+
+
+INBETWEENER = InbetweenerRecipe(
+    "inbetweener",
+    KeyframeConfig(activity=True, turning=True),
+    steps=10_000,
+    kinematic=KINEMATIC,
+    loss_weights=LOSS_WEIGHTS,
+    snr=0.3,
+    motions=1500,
+    acts=1000,
+    recordings=40,
+    levels=0.3,
+    paces=0.5,
+    variations=0.6,
+    unvaried=0.5,
+    sizes=0.1,
+    stages=0.2,
+)
+
+
+def training_windows(recipe: InbetweenerRecipe) -> DanceWindows:
+    """The recipe's data, generated from its seed, and recordings.
+
+    The last data set is kept, because it takes minutes to generate.
+    """
+    windows = _windows(data_of(recipe))
+    if recipe.config.turning:
+        windows = replace(windows, motion_scaler=scaler_of_turning(windows))
+    return with_path_scale(windows, recipe.path_scale)
+
+
+NOT_DATA = (
+    "name", "config", "steps", "kinematic", "loss_weights", "snr", "lr", "optimizer", "batch",
+    "decay", "seed", "path_scale", "sizes", "stages",
+)  # fmt: skip
+
+
+def data_of(recipe: InbetweenerRecipe) -> InbetweenerRecipe:
+    """The recipe without all that does not change its data, so that trainings share them."""
+    plain = InbetweenerRecipe("", KeyframeConfig(), steps=0)
+    return replace(recipe, **{name: getattr(plain, name) for name in NOT_DATA})
+
+
+@lru_cache(maxsize=1)
+def _windows(recipe: InbetweenerRecipe) -> DanceWindows:
+    positions, contacts = zip(*varied(recipe), strict=True)
+    return DanceWindows.of(positions, contacts, None, recipe.frames)
+
+
+def varied(recipe: InbetweenerRecipe) -> Iterator[Recorded]:
+    """Walks, dances, performed sentences and recordings, each in a variation that is drawn.
+
+    Levels, upper body, pelvis, limbs, pace: in this order, so that feet stand where they stood and
+    a pace is that of the whole figure. The first version of a recording keeps its pace. The share
+    `unvaried` of all stays as it was made.
+    """
+    from data_synth import levels, mixed, variations, warps
+
+    seed = recipe.data_seed
+    recorded = training_recordings() if recipe.recordings else []  # at first: they can be missing
+    made = [
+        *mixed.motions(recipe.motions, seed, recipe.seconds),
+        *mixed.sentences(recipe.acts, seed),
+    ]
+    every = [*made, *recorded * recipe.recordings]
+    for k, (positions, contacts) in enumerate(every):
+        if np.random.default_rng([seed, 9, k]).uniform() < recipe.unvaried:
+            yield positions.astype(np.float32), contacts
+            continue
+        rng = np.random.default_rng([seed, 8, k])
+        if k < len(made) and rng.uniform() < recipe.levels:
+            positions = levels.at_levels(positions, rng)
+        if rng.uniform() < recipe.variations:
+            upper, _ = every[rng.integers(len(every))]
+            positions = variations.with_upper_body_of(positions, upper)
+        if rng.uniform() < recipe.variations:
+            positions = variations.pelvis_moved(positions, rng)
+        if rng.uniform() < recipe.variations:
+            positions = variations.limbs_turned(positions, rng)
+        share = recipe.paces if k < len(made) else float(k >= len(made) + len(recorded))
+        if rng.uniform() < share:
+            positions, contacts = warps.warped(positions, contacts, rng)
+        yield positions.astype(np.float32), contacts
+
+
+def scaler_of_turning(windows: DanceWindows) -> Scaler:
+    """The scaler of the same windows, seen in each frame's own heading (`beyond.turning_frame`)."""
+    some = torch.linspace(0, len(windows) - 1, min(len(windows), FITTED)).long()
+    features = windows.motion_scaler.inverse(windows.take(some)[0])
+    known = torch.ones(*features.shape[:2], J, dtype=torch.bool)
+    return Scaler.fit(TurningFrame.of(features, known).enter(features))
+
+
+def with_path_scale(windows: DanceWindows, metres: float) -> DanceWindows:
+    """The same windows, in which a change of the pelvis' path by `metres` counts as 1.
+
+    A path goes on for metres, so in standard deviations the centimetres between two keyframes are
+    next to nothing.
+    """
+    scaler = windows.motion_scaler
+    std = scaler.std.clone()
+    std[dance_frame.PATH] = metres
+    return replace(windows, motion_scaler=Scaler(scaler.mean, std))
+
+
+def train_inbetweener(
+    recipe: InbetweenerRecipe,
+    run_file: Path,
+    windows: DanceWindows | None = None,
+    log=print,
+    device: str | None = None,
+) -> Inbetweener:
+    """Train by a recipe, or continue the run in `run_file`; the weights are averaged ones.
+
+    `device` is as in `train_recipe`.
+    Raises ValueError when the run in `run_file` was begun with other settings.
+    """
+    windows = training_windows(recipe) if windows is None else windows
+    schedule = shifted(cosine_schedule(recipe.config.S), recipe.snr)
+    torch.manual_seed(recipe.seed)
+    model = network(recipe.config)
+    about = {"network": type(model).__name__, "data": digest(windows)}
+    facts = {"windows": len(windows)} | bones_of(windows)
+    source = "data_synth.mixed, synthetic"
+    if recipe.recordings:
+        source = f"data_synth.mixed and recordings. {CREDIT}"
+    trained, card = train_recipe(
+        recipe,
+        run_file,
+        model,
+        loss_of(recipe, windows, schedule),
+        Provenance(about, facts, source),
+        warmup=300,
+        log=log,
+        device=device,
+    )
+    return Inbetweener(trained, schedule, windows.motion_scaler, card)
+
+
+def loss_of(recipe: InbetweenerRecipe, windows: DanceWindows, schedule: Schedule) -> LossFn:
+    """The loss of a recipe: eq. 4 of the remainder, with the terms that the recipe names."""
+    scaler = windows.motion_scaler
+    data_loss = weighted_loss(
+        recipe.loss_weights, schedule, scaler, dance_frame.moves, lambda: toes_moved(windows)
+    )
+    if recipe.config.target == "v":
+        data_loss = weighted_by_step(data_loss, as_x0_errors(schedule))
+
+    def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
+        device = next(model.parameters()).device
+        motion, _, planted = windows.draw(recipe.batch, generator)
+        known = drawn_masks(len(motion), windows.n, generator)
+        sizes = 1 + recipe.sizes * (2 * uniform(generator, len(motion)) - 1)
+        high = (uniform(generator, len(motion)) < recipe.stages) & known.flatten(1).any(1)
+        heights = high * uniform(generator, len(motion))
+        motion = as_seen(scaler.inverse(motion), known, sizes, heights)
+        frame = model.frame(motion, known)
+        motion = scaler.transform(frame.enter(motion)).to(device)
+        columns = known.repeat_interleave(3, dim=-1).to(device)
+        lines = model.lines(motion, columns, frame.to(device))
+        squares = lines.scale.square()
+        loss = weighted(data_loss, squares / squares.mean((1, 2), keepdim=True))
+        of_batch = batch_loss(
+            recipe.kinematic, loss, schedule, scaler, lambda s: body_around(lines, s)
+        )
+        return of_batch(model, lines.remainder(motion), lines, planted.to(device), generator)
+
+    return loss_fn
+
+
+def as_seen(
+    motion: Float[Tensor, "B T 63"],
+    known: Bool[Tensor, "B T 21"],
+    sizes: Float[Tensor, "B"],
+    heights: Float[Tensor, "B"],
+) -> Float[Tensor, "B T 63"]:
+    """Motions (features in metres) as `Inbetweener.fill` has them, from their first given pose.
+
+    They are resized, and stand on stages of these heights (m).
+    """
+    positions = dance_frame.to_positions(motion).double().numpy()
+    masks = known.numpy()
+    drawn = zip(positions, masks, sizes.tolist(), heights.tolist(), strict=True)
+    for one, mask, size, height in drawn:
+        one[:] = size * first_place(one, mask).enter(one) + [0.0, height, 0.0]
+    return torch.from_numpy(dance_frame.placed_features(positions)).float()
+
+
+def body_around(lines: GivenLines, scaler: Scaler) -> Body:
+    """The figure of remainders: their joints in metres are those of lines and remainder."""
+
+    def to_positions(remainder: Float[Tensor, "B T 63"]) -> Float[Tensor, "B T 21 3"]:
+        motion = scaler.inverse(lines.whole(remainder))
+        return dance_frame.to_positions(lines.frame.leave(motion) if lines.frame else motion)
+
+    return replace(dance_frame.body_of(scaler), to_positions=to_positions)
