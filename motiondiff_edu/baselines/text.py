@@ -12,7 +12,7 @@ from jaxtyping import Bool, Float, Int
 from torch import Tensor, nn
 
 from ..conditions.word_encoder import FIRST, PADDING, present
-from ..mofusion import Music
+from ..mofusion import Memory
 from ..performers.networks import register
 from ..performers.text_mofusion import TextMoFusion, TextMoFusionConfig
 
@@ -59,10 +59,10 @@ class BagMoFusion(TextMoFusion):
 class TextRegression(TextMoFusion):
     """MoFusion's network without the diffusion: it never sees x_s or s."""
 
-    def forward(
-        self, x_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"], context: Music
+    def decode(
+        self, x_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"], memory: Memory
     ) -> Float[Tensor, "B T D"]:
-        return super().forward(x_s.new_zeros(x_s.shape), s.new_zeros(s.shape), context)
+        return super().decode(x_s.new_zeros(x_s.shape), s.new_zeros(s.shape), memory)
 
 
 register("mover", BagMoFusion, BagConfig)

@@ -21,6 +21,13 @@ NEEDED = {
     "mover": ("D", "C", "S", "target", "words"),
     "inbetweener": ("D", "C", "S", "target"),
 }
+# the methods that they call
+METHODS = {
+    "walker": ("encode", "decode"),
+    "dancer": ("listen", "encode", "decode"),
+    "mover": ("listen", "encode", "decode"),
+    "inbetweener": ("frame", "lines"),
+}
 
 
 @runtime_checkable
@@ -67,7 +74,7 @@ def register(
     build   `build(config, *scalers)` makes a new network (default: `model(config)`); the scalers
             are those of poses and control, or of motion and Mel
     Raises ValueError for an unknown performer, a name or a configuration that another class has,
-    and a configuration that lacks a field or a default.
+    a network that lacks a method, and a configuration that lacks a field or a default.
     """
     if performer not in NEEDED:
         raise ValueError(
@@ -79,6 +86,13 @@ def register(
     if missing or bare:
         what = f"lacks {', '.join(missing)}" if missing else f"has no default for {', '.join(bare)}"
         raise ValueError(f"{config.__name__} {what}; a {performer}'s network needs that")
+    unable = [name for name in METHODS[performer] if not callable(getattr(model, name, None))]
+    if unable:
+        raise ValueError(
+            f"{model.__name__} has no method {', '.join(unable)}: a {performer} calls "
+            f"{', '.join(METHODS[performer])}. Where nothing can be computed beforehand, `encode` "
+            "returns what it is given"
+        )
     taken = _NETWORKS.get(model.__name__)
     if taken and _full_name(taken.model) != _full_name(model):
         other = _full_name(taken.model)

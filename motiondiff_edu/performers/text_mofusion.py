@@ -72,7 +72,7 @@ class TextMoFusion(nn.Module):
     def forward(
         self, x_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"], context: Music
     ) -> Float[Tensor, "B T D"]:
-        return self.unet(x_s, s, context)
+        return self.decode(x_s, s, self.encode(context, x_s.shape[1]))
 
     def encode(self, context: Music, frames: int) -> Memory:
         """What all steps have in common, as MoFusion.encode."""

@@ -33,9 +33,9 @@ def test_a_bag_cannot_tell_forth_from_back_and_a_sequence_can():
     ids, s = ids_of([FORTH, BACK], WORDS), torch.tensor([20, 20])
     x = torch.randn(1, 40, SMALL.D).expand(2, -1, -1)
     with torch.no_grad():
-        both = mover(BagConfig).denoiser(ids)(x, s)
+        both = mover(BagConfig).denoiser(ids, 40)(x, s)
         torch.testing.assert_close(both[0], both[1])
-        apart = mover_of().denoiser(ids)(x, s)
+        apart = mover_of().denoiser(ids, 40)(x, s)
     assert (apart[0] - apart[1]).abs().max() > 1e-3
 
 

@@ -44,6 +44,9 @@ class LinearWalker(nn.Module):
         self.config = config
         self.ahead = nn.Linear(config.T_h, config.T_p)
 
+    def listen(self, *music):
+        """So that it can be registered for a dancer, too."""
+
     def encode(self, past, control):
         return self.ahead(past.mT).mT
 
@@ -136,12 +139,18 @@ class Bare:
     target: str = "x0"
 
 
+class Unable(nn.Module):
+    def encode(self, past, control):
+        return past, control
+
+
 @pytest.mark.parametrize(
     "arguments, words",
     [
         (("singer", LinearWalker, LinearConfig), "not 'singer'"),
         (("walker", LinearWalker, WithoutTarget), "WithoutTarget lacks target"),
         (("walker", LinearWalker, Bare), "Bare has no default for D"),
+        (("walker", Unable, LinearConfig), "Unable has no method decode: a walker calls encode, d"),
     ],
 )
 def test_what_cannot_be_registered(registry, arguments, words):
@@ -156,7 +165,7 @@ def test_a_network_belongs_to_one_performer(registry):
 
 
 def test_a_name_belongs_to_one_class_which_may_be_defined_again(registry):
-    other = type("MoDiff", (nn.Module,), {})
+    other = type("MoDiff", (LinearWalker,), {})
     with pytest.raises(ValueError, match="MoDiff is the name of motiondiff_edu.modiff.MoDiff"):
         register("walker", other, MoDiffConfig)
     again = type("LinearWalker", (LinearWalker,), {"__module__": __name__})
