@@ -12,18 +12,14 @@ import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
-from ..beyond.above_floor import feet_above_floor, lowest_given
-from ..beyond.constant_bones import Lengths, steady_bones
-from ..beyond.dragged_feet import lift_dragged_feet
-from ..beyond.foot_lock import steady_feet
 from ..beyond.guidance import blended, guided
-from ..beyond.kept_places import kept_places
-from ..beyond.step_clearance import clear_steps
 from ..beyond.turning_frame import View
 from ..ddpm import Denoiser, Generators, Schedule, draw, final, timesteps
 from ..inbetweening import inpaint_steps, resampled
+from ..motion.cleanup import clean_up
 from ..motion.dance_frame import GROUND, PATH, Place, heading, placed_features, to_positions
 from ..motion.directions import ARMS, UPLEGS
+from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 from ..motion.skeleton import HIPS, J
 from .edit import Make
@@ -44,13 +40,7 @@ class Departures:
     `guidance`: > 0 applies `beyond.guidance.guided` first where the network does not see it; it
     doubles the cost. A larger value follows sparse keyframes better, but the motion jumps more at
     the ends of a gap.
-    `bones`: generated bones get the lengths of the given ones, or those that suit them
-    (`beyond.constant_bones`).
-    `feet`: planted feet do not slide (`beyond.foot_lock`), and a foot that is given twice at the
-    same place stays there (`beyond.kept_places`).
-    `clearance`: planted feet lie on the floor, y = 0, and swinging ones are higher
-    (`beyond.step_clearance`); none is lower than the floor and all given joints
-    (`beyond.above_floor`), and one that is dragged takes a step (`beyond.dragged_feet`).
+    `clean`: seams, bones and feet are cleaned up in the end (`motion.cleanup`).
     `remainder`: times what such a network adds to the lines; below 1 the result is nearer to them.
     `resample`: how often each step is made (`inbetweening.resampled`).
     """
@@ -58,15 +48,13 @@ class Departures:
     blend: int | None = 10
     shown: bool = True
     guidance: float = 0.5
-    bones: bool = True
-    feet: bool = True
-    clearance: bool = True
+    clean: bool = True
     remainder: float = 1.0
     resample: int = 1
 
 
 OURS = Departures()
-PAPER = Departures(blend=None, shown=False, guidance=0.0, bones=False, feet=False, clearance=False)
+PAPER = Departures(blend=None, shown=False, guidance=0.0, clean=False)
 
 
 @runtime_checkable
@@ -133,28 +121,9 @@ def inbetween(
     poses = to_positions(view.leave(dancer.motion_scaler.inverse(x0)))
     made = place.leave(poses.double().cpu().numpy())
     whole = np.where(known[..., None], positions, made)
-    return finished(whole, positions, known, departures) if known.any() else whole
-
-
-def finished(
-    made: Float[np.ndarray, "samples T 21 3"],
-    given: Float[np.ndarray, "T 21 3"],
-    known: Bool[np.ndarray, "T 21"],
-    departures: Departures,
-) -> Float[np.ndarray, "samples T 21 3"]:
-    """Motions with the bones and the standing feet of what is given, over the floor.
-
-    The floor is at y = 0; a given joint under it lowers it.
-    """
-    if departures.bones:
-        made = steady_bones(made, known, Lengths.of(given, known).completed())
-    if departures.feet:
-        made = steady_feet(kept_places(made, given, known), known)
-    if departures.clearance:
-        lowest = lowest_given(given, known)
-        steps = [feet_above_floor(clear_steps(one, known), known, lowest) for one in made]
-        made = np.stack([lift_dragged_feet(one, known, floor=lowest) for one in steps])
-    return made
+    if not departures.clean or not known.any():
+        return whole
+    return np.stack([clean_up(one, FPS, known) for one in whole])
 
 
 def steered(

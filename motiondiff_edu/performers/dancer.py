@@ -25,13 +25,13 @@ from ..fast.mofusion import FastMoFusion
 from ..fast.twins import watched
 from ..mofusion import MoFusion, MoFusionConfig, Music
 from ..motion.checks import checked_guidance, checked_samples, checked_seconds, checked_steps
+from ..motion.cleanup import Body, clean_up
 from ..motion.dance_frame import to_positions
 from ..motion.motion import Motion, MotionWarning
 from ..motion.retarget import SHORTEST
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
 from .dance_windows import FPS, mel_frames
-from .finished import finished_performance
 from .keyframe_mofusion import KeyframeMoFusion
 from .networks import register
 from .performer import Performer, generators, sampled, without_gradients
@@ -221,7 +221,7 @@ class Dancer(Performer):
         """Dance to a sound file, or to mono sound at 16 kHz (N,) from -1 to 1.
 
         The returned motion contains the sound. Its bones keep their lengths and its standing feet
-        do not slide (`performers/finished.py`); the network's own dance is that of `dance_mel`.
+        do not slide (`motion/cleanup`); the network's own dance is that of `dance_mel`.
 
         seconds  use so much of the sound from its start (default: all of it)
         samples  above 1: a list with this many dances; the first is that of samples=1
@@ -274,7 +274,7 @@ class Dancer(Performer):
         dances = dances.double().cpu().numpy()
         made = [
             Motion(
-                finished_performance(dance, FPS, self.bones),
+                clean_up(dance, FPS, body=Body.of(dance, bones=self.bones)),
                 FPS,
                 audio=audio.numpy(),
                 sample_rate=SAMPLE_RATE,
@@ -298,7 +298,7 @@ class Dancer(Performer):
     ) -> Float[Tensor, "B T 21 3"]:
         """Dance to log-Mel spectrograms (`conditions.music.log_mel`), one dance each.
 
-        Dances are in metres, at 20 frames a second, and as the network makes them: not `finished`.
+        Dances are in metres, at 20 frames a second, and as the network makes them, not cleaned up.
 
         frames  the length of the dance (default: that of the music)
         steps   of DDIM with `eta`, at most S; None for DDPM with all steps, and noise of the

@@ -21,6 +21,7 @@ from ..conditions.text import Read
 from ..conditions.word_encoder import WordReader
 from ..ddpm import Denoiser, Generators, Schedule, draw
 from ..motion.checks import checked_guidance, checked_samples, checked_seconds, checked_steps
+from ..motion.cleanup import Body, clean_up
 from ..motion.motion import Motion, MotionWarning
 from ..motion.moving_frame import D, to_features, to_positions
 from ..motion.root_frame import FPS
@@ -28,7 +29,6 @@ from ..motion.scaler import Scaler
 from ..motion.skeleton import BONE_LENGTHS
 from ..prediction import denoiser_of
 from .described_windows import GRID
-from .finished import finished_performance
 from .performer import Performer, evaluating, generators, sampled, without_gradients
 from .planned_mofusion import PlannedMoFusion
 from .text_mofusion import Texts
@@ -178,7 +178,7 @@ class Mover(Performer):
         """Do what a sentence says, such as "walks forward, then waves with the left hand".
 
         The figure begins at the origin, facing z. Its bones have constant lengths, and feet that
-        stand do not slide (`performers/finished.py`; `act_ids` has the network's own). A warning
+        stand do not slide (`motion/cleanup`; `act_ids` has the network's own). A warning
         says which words were read as others; there is none for a text that `reader.read` has read
         already (its `notes` say the same).
 
@@ -209,10 +209,9 @@ class Mover(Performer):
         with with_bar(self, evaluations, "moving", progress) as one:
             made = one.act_ids(ids, whole, generator=draws, steps=steps, guidance=guidance)
         source = f"{found.text:.60}"
-        made = [
-            Motion(finished_performance(x, FPS, BONE_LENGTHS)[:frames], FPS, source=source)
-            for x in made.double().cpu().numpy()
-        ]
+        acts = made.double().cpu().numpy()
+        clean = [clean_up(x, FPS, body=Body.of(x, bones=BONE_LENGTHS)) for x in acts]
+        made = [Motion(x[:frames], FPS, source=source) for x in clean]
         return made if samples > 1 else made[0]
 
     @without_gradients

@@ -18,11 +18,11 @@ from ..editing.inbetween import OURS, Departures
 from ..editing.masks import checked_known
 from ..editing.plausible import each_until_plausible, longest_glide
 from ..motion.checks import checked_count, checked_samples
+from ..motion.cleanup import Body, clean_up, floor_under
 from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HIPS, TOES
 from ..performers.dancer import Dancer
-from ..performers.finished import finished_edit, finished_performance
 from ..performers.mover import LONGEST, SHORTEST, Mover
 from ..performers.performer import generators
 from ..performers.walker import Walker
@@ -72,7 +72,7 @@ def inbetween(
     made, notes = [], []
     first = generate(draws, OURS)
     for positions, note in each_until_plausible(first, draws, motion.positions, known, generate):
-        whole = positions if known.any() else finished_performance(positions, FPS)
+        whole = positions if known.any() else clean_up(positions, FPS)
         made.append(_made(motion, known, whole, "in-betweens"))
         notes += [note] if note else []
     if notes:
@@ -126,7 +126,7 @@ def edit(
     figure does, the legs included. `known` joints keep their places about the root; while the
     pelvis is known from the first frame on, the path stays, too, and they are exactly where they
     were. Bones have the lengths of the motion's, and feet that stand do not slide
-    (`performers/finished.py`). `strength`, above 0 and up to 1, is the share of the noise: the
+    (`motion/cleanup`). `strength`, above 0 and up to 1, is the share of the noise: the
     more, the less of the motion stays; with 1 only the known joints do. With `samples` above 1, the
     result is a list with this many motions; the first is that of samples=1. A MotionWarning says
     where the feet slide, and did not before.
@@ -162,7 +162,8 @@ def edit(
         )  # fmt: skip
     nothing = np.zeros((len(motion), len(motion.skeleton)), bool)
     kept = nothing if mask is None else mask
-    made = [finished_edit(one, motion.positions, FPS, kept) for one in made]
+    body, floor = Body.of(motion.positions), floor_under(motion.positions)
+    made = [clean_up(one, FPS, kept, body=body, floor=floor) for one in made]
     glides = [glide for one in made if any(glide := longest_glide(one, nothing))]
     if glides and not any(longest_glide(motion.positions, nothing)):
         which = f" ({len(glides)} of {count} samples)" if count > 1 else ""

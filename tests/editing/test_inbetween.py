@@ -99,7 +99,7 @@ def test_feet_stay_above_the_floor_or_the_lowest_given_joint(lowest):
     made = inbetween(sinking(dancer(), truth, 0.1), truth, known, departures=how, **args)[0]
     feet = made[:, [*HEELS, *TOES], 1][~known.all(-1)]
     assert feet.min() == pytest.approx(min(0.0, at), abs=1e-6)
-    plain = replace(how, clearance=False)
+    plain = replace(how, clean=False)
     sunk = inbetween(sinking(dancer(), truth, 0.1), truth, known, departures=plain, **args)[0]
     assert sunk[..., 1].min() < -0.05
 
@@ -182,7 +182,7 @@ def test_what_sets_it_apart_from_the_papers_masking():
 
     usual = made()
     plain = made(PAPER)
-    torn = made(Departures(bones=False, feet=False))
+    torn = made(Departures(clean=False))
     assert seam_jump(usual, known).mean() < 0.5 * seam_jump(plain, known).mean()
     lengths = bone_lengths(truth)[0]
     assert (
@@ -193,7 +193,7 @@ def test_what_sets_it_apart_from_the_papers_masking():
     )
     changed = [
         made(replace(OURS, **{name: value}))
-        for name, value in (("guidance", 0.0), ("feet", False), ("resample", 2), ("blend", None))
+        for name, value in (("guidance", 0.0), ("clean", False), ("resample", 2), ("blend", None))
     ]
     assert all(np.abs(x - usual).max() > 1e-3 for x in changed)
     ends = [
@@ -237,7 +237,7 @@ def test_the_guesses_of_a_dancer_that_predicts_noise_are_held_within_what_dances
         for who in (one, wild)
     }
     assert guesses[wild].abs().max() == pytest.approx(FARTHEST, rel=1e-2)
-    raw = Departures(bones=False, feet=False, clearance=False, blend=None)
+    raw = Departures(clean=False, blend=None)
     made = inbetween(wild, clip(), seed(40, 10), steps=5, departures=raw)
     features = wild.motion_scaler.transform(torch.from_numpy(to_features(made)).float())
     assert features[..., 3:].abs().max() < 1.01 * FARTHEST

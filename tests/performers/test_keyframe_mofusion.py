@@ -108,7 +108,7 @@ def test_in_betweens_use_it_and_the_papers_masking_does_not(dancer):
 
 def test_a_smaller_remainder_is_nearer_to_straight_lines(dancer):
     truth = np.random.default_rng(0).normal(size=(T, 21, 3)).cumsum(0) * 0.05
-    known, bare = keyframes(T, 8), Departures(bones=False, feet=False, clearance=False)
+    known, bare = keyframes(T, 8), Departures(clean=False)
     whole, half, none = (
         inbetween(
             dancer, truth, known, steps=4, departures=replace(bare, remainder=share),
@@ -165,7 +165,7 @@ def test_in_betweens_of_a_figure_that_turns_do_not_shrink(dancer):
     turning = replace(dancer, model=model)
     angles = np.linspace(0, 0.95 * np.pi, T)
     truth = np.stack([Place(np.zeros(3), np.array(a)).leave(rest_pose()[None])[0] for a in angles])
-    known, bare = keyframes(T, T - 1), Departures(bones=False, feet=False, clearance=False)
+    known, bare = keyframes(T, T - 1), Departures(clean=False)
     bare = replace(bare, remainder=0.0)
     made, shrunk = (
         inbetween(one, truth, known, steps=2, departures=bare)[0] for one in (turning, dancer)
