@@ -39,9 +39,7 @@ class Row:
 
 ROWS = {
     "ours": Row("all departures", OURS),
-    "no-bones": Row("bones may change their length", replace(OURS, bones=False)),
-    "no-feet": Row("feet may slide", replace(OURS, feet=False)),
-    "no-clearance": Row("feet at any height", replace(OURS, clearance=False)),
+    "no-clean-up": Row("no clean-up of seams, bones and feet", replace(OURS, clean=False)),
     "not-shown": Row("a network that is not shown what is given", OURS, NOT_SHOWN),
     "no-guidance": Row(
         "the same, no guidance", replace(OURS, guidance=0.0), NOT_SHOWN, "not-shown"
