@@ -267,7 +267,7 @@ def test_in_betweens_that_jump_are_made_again(better, said, walked, monkeypatch)
         return made
 
     monkeypatch.setattr(Inbetweener, "fill", astray)
-    monkeypatch.setattr(shipped, "finished", lambda made, *_: made)
+    monkeypatch.setattr(shipped, "clean_samples", lambda made, *_: made)
     with pytest.warns(MotionWarning, match=f"between frames 20 and 40, where 1.* m/s.*{said}"):
         made = md.inbetween(walked, md.keyframes(walked), progress=False)
     assert np.array_equal(made.positions, walked.positions) == better

@@ -17,16 +17,15 @@ from torch import Tensor
 
 from .. import reconstruction
 from ..beyond.back_with_known import FADE, blended_way_back
-from ..beyond.constant_bones import Lengths, steady_bones
-from ..beyond.foot_lock import steady_feet
 from ..beyond.guidance import blended_guess
+from ..motion.cleanup import Body, clean_bones, clean_up
 from ..motion.dance_frame import headings_between
 from ..motion.directions import ARMS, UPLEGS
 from ..motion.motion import MotionError, MotionWarning
 from ..motion.planting import runs
-from ..motion.root_frame import smoothed_root, to_root_frame, to_world
+from ..motion.root_frame import FPS, smoothed_root, to_root_frame, to_world
 from ..motion.scaler import Scaler
-from ..motion.skeleton import HIPS, JOINTS, TOES, J
+from ..motion.skeleton import HIPS, JOINTS, J
 from ..performers.joined import farthest, unlike_training
 from ..reconstruction import Rollout, Stop
 from ..rollout import SLACK, AnyWalker
@@ -60,7 +59,7 @@ def reconstruct(
     mask = torch.from_numpy(np.repeat(known, 3, axis=1))
     given = torch.where(mask, torch.from_numpy(poses).flatten(1), 0.0)
     warn_of_unlike(walker.pose_scaler, given, known)
-    lengths = Lengths.of(positions, known).completed()
+    body = Body.of(positions, known).completed()
     mean = walker.pose_scaler.mean.to(given).expand_as(given)
     guess = blended_guess(mean[None], given[None], mask[None], FADE)[0]
     steer = within_training(walker, control, known)
@@ -69,11 +68,11 @@ def reconstruct(
     for _ in watch(range(rounds)):
         found = _once(rollout, guess, mask, steer, firsts)
         joints = torch.where(mask, given, found).unflatten(-1, (J, 3)).numpy()
-        guess = torch.from_numpy(steady_bones(joints, known, lengths)).flatten(1)
+        guess = torch.from_numpy(clean_bones(joints, known, body)).flatten(1)
     start = (*place[0].tolist(), float(facing[0]))
     made = to_world(guess.unflatten(-1, (J, 3)).numpy(), control, start)
     whole = np.where(known[..., None], positions, made)
-    return whole if known[:, list(TOES)].all() else steady_feet(whole, known)
+    return clean_up(whole, FPS, known)
 
 
 def within_training(

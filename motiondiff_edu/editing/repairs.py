@@ -13,9 +13,9 @@ import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
-from ..beyond.constant_bones import Lengths, steady_bones
 from ..metrics import reconstruction as measures
 from ..metrics.bone_lengths import bone_rmse
+from ..motion.cleanup import Body, clean_bones
 from ..reconstruction import Rollout, Stop, reconstruct_steps
 from ..rollout import AnyWalker
 
@@ -104,5 +104,4 @@ def with_bones(
     """
     joints, ahead = (x.double().cpu().unflatten(-1, (-1, 3)).numpy() for x in (past, walked))
     here = known.cpu().unflatten(-1, (-1, 3)).all(-1).numpy()
-    lengths = Lengths.of(ahead, np.ones(ahead.shape[:-1], bool))
-    return torch.from_numpy(steady_bones(joints, here, lengths)).flatten(-2).to(past)
+    return torch.from_numpy(clean_bones(joints, here, Body.of(ahead))).flatten(-2).to(past)

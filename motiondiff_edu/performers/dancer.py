@@ -27,13 +27,13 @@ from ..motion.checks import (
     checked_seed,
     checked_steps,
 )
+from ..motion.cleanup import Body, clean_up
 from ..motion.dance_frame import to_positions
 from ..motion.motion import Motion, MotionWarning
 from ..motion.progress import bar
 from ..motion.retarget import SHORTEST
 from ..motion.scaler import Scaler
 from .dance_windows import FPS, mel_frames
-from .finished import finished_performance
 from .networks import register
 from .performer import Performer, Watch, evaluating, generators, sampled
 
@@ -170,7 +170,7 @@ class Dancer(Performer):
         """Dance to a sound file (its name, its bytes, or open), or to samples with their rate.
 
         The returned motion contains the sound. Its bones keep their lengths and its standing feet
-        do not slide (`performers/finished.py`); the network's own dance is that of `dance_mel`.
+        do not slide (`motion/cleanup`); the network's own dance is that of `dance_mel`.
 
         sample_rate  of mono samples (N,) from -1 to 1, in Hz; a sound file has its own
         seconds  use so much of the sound from its start (default: all of it)
@@ -229,7 +229,7 @@ class Dancer(Performer):
         dances = dances.double().cpu().numpy()
         made = [
             Motion(
-                finished_performance(dance, FPS, self.bones),
+                clean_up(dance, FPS, body=Body.of(dance, bones=self.bones)),
                 FPS,
                 audio=audio.numpy(),
                 sample_rate=SAMPLE_RATE,
@@ -254,7 +254,7 @@ class Dancer(Performer):
     ) -> Float[Tensor, "B T 21 3"]:
         """Dance to log-Mel spectrograms (`conditions.music.log_mel`), one dance each.
 
-        Dances are in metres, at 20 frames a second, and as the network makes them: not `finished`.
+        Dances are in metres, at 20 frames a second, and as the network makes them, not cleaned up.
 
         frames  the length of the dance (default: that of the music)
         steps   of DDIM with `eta`, at most S; None for DDPM with all steps, and noise of the

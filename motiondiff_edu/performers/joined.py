@@ -1,11 +1,8 @@
 """A continuation that goes on from the motion that it continues, with its body and without a jump.
 
 A walker that gets a pose unlike its training begins with one that it knows: a joint may move by
-half a metre from the last given frame to the first new one. Then the first half second, or more if
-a joint has far to go, takes over pose and speed of the given motion. So it is in nearly all
-recordings; where a joint would jump far, a warning says so. In every continuation bones keep the
-lengths of the given motion, standing feet stay where they stand, and feet that were dragged take a
-step (`performers/finished.py`).
+half a metre from the last given frame to the first new one. So it is in nearly all recordings. The
+clean-up blends the seam (`motion/cleanup`); where a joint would jump far, a warning says so.
 """
 
 from dataclasses import dataclass
@@ -15,19 +12,17 @@ import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
-from ..beyond.inertialize import inertialized
 from ..conditions.control import splice
 from ..metrics.seams import AROUND, seam_step
+from ..motion.cleanup import clean_up
 from ..motion.motion import Motion, MotionError
 from ..motion.root_frame import FPS, root_path, to_world
 from ..motion.scaler import Scaler
 from ..motion.skeleton import JOINTS, J
-from .finished import finished_continuation
 
-# m in a frame more than in the two frames on either side: a joint that does so at the seam jumps;
-# from a synthetic walk none goes 3 cm farther
-JUMP = 0.05
-FAR = 0.25  # m in a frame: a jump that is said
+# m in a frame more than in the two frames on either side: a jump at the seam that is said; from a
+# synthetic walk no joint goes 3 cm farther
+FAR = 0.25
 # standard deviations of the training, over the coordinates of a joint; no frame of 120 unseen
 # synthetic walks is as far (at most 4.64)
 UNLIKE = 5.0
@@ -75,31 +70,25 @@ class Start:
 def joined(
     start: Start, new: Float[np.ndarray, "T 21 3"]
 ) -> tuple[Float[np.ndarray, "T 21 3"], float]:
-    """New frames in the world, and how much farther a joint stepped at the seam than beside it."""
-    whole, known, jump = blended(start, new)
-    return finished_continuation(whole, FPS, known)[-len(new) :], jump
+    """New frames in the world, and how much farther a joint stepped at the seam than beside it.
 
-
-def blended(
-    start: Start, new: Float[np.ndarray, "T 21 3"]
-) -> tuple[Float[np.ndarray, "T2 21 3"], Bool[np.ndarray, "T2 21"], float]:
-    """A second of what is given and all new frames, in the world, without a jump between them.
-
-    And which joints are given, and how much farther a joint stepped at the seam than beside it (m).
+    The step is that of the network (m), before the clean-up.
     """
-    before = start.given[-round(AROUND * FPS) - 1 :]
-    k = len(before)
-
-    def placed(frames: np.ndarray) -> np.ndarray:
-        return np.concatenate([before, start.in_world(frames)])
-
-    whole = placed(new)
+    whole, known = placed(start, new)
+    k = len(whole) - len(new)
     jump = seam_step(whole, k) if 2 <= k < len(whole) - 1 else 0.0
-    if jump > JUMP:
-        whole = placed(inertialized(start.past, new, FPS))
+    return clean_up(whole, FPS, known)[k:], jump
+
+
+def placed(
+    start: Start, new: Float[np.ndarray, "T 21 3"]
+) -> tuple[Float[np.ndarray, "T2 21 3"], Bool[np.ndarray, "T2 21"]]:
+    """A second of what is given and all new frames, in the world, and which joints are given."""
+    before = start.given[-round(AROUND * FPS) - 1 :]
+    whole = np.concatenate([before, start.in_world(new)])
     known = np.zeros((len(whole), J), bool)
-    known[:k] = True
-    return whole, known, jump
+    known[: len(before)] = True
+    return whole, known
 
 
 def unlike_training(

@@ -26,6 +26,7 @@ from ..motion.checks import (
     checked_seed,
     checked_steps,
 )
+from ..motion.cleanup import Body, clean_up
 from ..motion.motion import Motion, MotionWarning
 from ..motion.moving_frame import D, to_features, to_positions
 from ..motion.progress import bar
@@ -33,7 +34,6 @@ from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 from ..motion.skeleton import BONE_LENGTHS
 from .described_windows import GRID
-from .finished import finished_performance
 from .performer import Performer, Watch, evaluating, generators, sampled
 from .planned_mofusion import PlannedMoFusion
 from .text_mofusion import Texts
@@ -185,7 +185,7 @@ class Mover(Performer):
         """Do what a sentence says, such as "walks forward, then waves with the left hand".
 
         The figure begins at the origin, facing z. Its bones have constant lengths, and feet that
-        stand do not slide (`performers/finished.py`; `act_ids` has the network's own). A warning
+        stand do not slide (`motion/cleanup`; `act_ids` has the network's own). A warning
         says which words were read as others; there is none for a text that `reader.read` has read
         already (its `notes` say the same).
 
@@ -218,10 +218,9 @@ class Mover(Performer):
             watch=bar("moving", (steps or self.schedule.S) + 1, progress),
         )
         source = f"{found.text:.60}"
-        made = [
-            Motion(finished_performance(x, FPS, BONE_LENGTHS)[:frames], FPS, source=source)
-            for x in made.double().cpu().numpy()
-        ]
+        acts = made.double().cpu().numpy()
+        clean = [clean_up(x, FPS, body=Body.of(x, bones=BONE_LENGTHS)) for x in acts]
+        made = [Motion(x[:frames], FPS, source=source) for x in clean]
         return made if samples > 1 else made[0]
 
     @torch.no_grad()

@@ -77,7 +77,7 @@ class Walker(Performer):
 
         The result has only the new frames. It begins one frame after the given motion, in the same
         world; `motion.then(more)` joins the two. Its bones are as long as the given ones, and feet
-        that stand do not slide (`performers/joined.py`; `rollout.generate` has the network's own).
+        that stand do not slide (`motion/cleanup`; `rollout.generate` has the network's own).
         Other body sizes work: the motion is scaled to the course's figure, and scaled back.
 
         control  forward m/s, left m/s, turning rad/s; 20 rows a second

@@ -13,15 +13,15 @@ from jaxtyping import Bool, Float
 from ..editing import by_words
 from ..editing import reconstruct as reconstruction
 from ..editing.by_words import STRENGTH
-from ..editing.inbetween import finished
+from ..editing.inbetween import clean_samples
 from ..editing.plausible import each_until_plausible, longest_glide
 from ..motion.checks import checked_count, checked_samples, checked_seed, checked_strength
+from ..motion.cleanup import Body, clean_up, floor_under
 from ..motion.known import checked_known
 from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
 from ..motion.progress import bar
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HIPS, TOES
-from ..performers.finished import finished_edit, finished_performance
 from ..performers.inbetweener import STEPS, Inbetweener
 from ..performers.mover import LONGEST, SHORTEST, Mover
 from ..performers.performer import generators
@@ -65,14 +65,13 @@ def inbetween(
             motion.positions, known, samples=len(draws), steps=steps, remainder=remainder,
             generator=draws, watch=bar("filling in", steps + 1, progress),
         )  # fmt: skip
-        return finished(made, motion.positions, known)
+        return clean_samples(made, known)
 
     draws = generators(seed, count)
     made, notes = [], []
     first = generate(draws, 1.0)
     for positions, note in each_until_plausible(first, draws, motion.positions, known, generate):
-        whole = positions if known.any() else finished_performance(positions, FPS)
-        made.append(_made(motion, known, whole, "in-betweens"))
+        made.append(_made(motion, known, positions, "in-betweens"))
         notes += [note] if note else []
     if notes:
         which = f" ({len(notes)} of {count} samples)" if count > 1 else ""
@@ -125,10 +124,10 @@ def edit(
     figure does, the legs included. `known` joints keep their places about the root; while the
     pelvis is known from the first frame on, the path stays, too, and they are exactly where they
     were. Bones have the lengths of the motion's, and feet that stand do not slide
-    (`performers/finished.py`). `strength`, above 0 and up to 1, is the share of the noise:
-    higher values keep less of the motion; 1 keeps only the known joints. With `samples` above 1,
-    the result is a list with this many motions; the first is that of samples=1. A MotionWarning
-    says where the feet slide, and did not before.
+    (`motion/cleanup`). `strength`, above 0 and up to 1, is the share of the noise: higher values
+    keep less of the motion; 1 keeps only the known joints. With `samples` above 1, the result is a
+    list with this many motions; the first is that of samples=1. A MotionWarning says where the feet
+    slide, and did not before.
     Raises MotionError if motion and mask do not fit, or the motion is shorter or longer than those
     of the training, TextError for a text that cannot be read, and ValueError for numbers out of
     range.
@@ -161,7 +160,8 @@ def edit(
     )  # fmt: skip
     nothing = np.zeros((len(motion), len(motion.skeleton)), bool)
     kept = nothing if mask is None else mask
-    made = [finished_edit(one, motion.positions, FPS, kept) for one in made]
+    body, floor = Body.of(motion.positions), floor_under(motion.positions)
+    made = [clean_up(one, FPS, kept, body=body, floor=floor) for one in made]
     glides = [glide for one in made if any(glide := longest_glide(one, nothing))]
     if glides and not any(longest_glide(motion.positions, nothing)):
         which = f" ({len(glides)} of {count} samples)" if count > 1 else ""

@@ -122,7 +122,7 @@ def test_every_round_begins_with_what_the_one_before_found_and_there_are_three(m
         return guess + 1.0
 
     monkeypatch.setattr(module, "_once", higher)
-    monkeypatch.setattr(module, "steady_bones", lambda joints, known, lengths: joints)
+    monkeypatch.setattr(module, "clean_bones", lambda joints, known, body: joints)
     reconstruct(standing(), one.positions, known, generator=torch.Generator())
     assert len(begun) == 3
     missing = ~torch.from_numpy(known.repeat(3, axis=1))

@@ -8,18 +8,17 @@ import torch
 
 import motiondiff_edu as md
 from data_synth.walking import drawn_walk, walk
-from motiondiff_edu.beyond.inertialize import LONGEST
 from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.metrics.bone_lengths import bone_lengths
 from motiondiff_edu.metrics.seams import seam_over_motion, seam_step
 from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.motion.cleanup.seam import LONGEST
 from motiondiff_edu.motion.inverse_kinematics import drag
 from motiondiff_edu.motion.motion import Motion, MotionWarning
 from motiondiff_edu.motion.root_frame import control_from_path, to_root_frame
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import JOINTS, TOES, joint_index
 from motiondiff_edu.performers.joined import (
-    JUMP,
     OFF_FLOOR,
     UNLIKE,
     Start,
@@ -29,6 +28,7 @@ from motiondiff_edu.performers.joined import (
     unlike_training,
 )
 
+JUMP = 0.05  # m in a frame more than beside the seam: a jump that one sees
 AHEAD = np.tile([1.0, 0.0, 0.0], (50, 1))
 
 
@@ -63,9 +63,13 @@ def sliding(more: Motion) -> float:
 
 
 def as_the_network_says(monkeypatch) -> None:
-    """Without what is done to bones and feet."""
-    plain = "motiondiff_edu.performers.joined.finished_continuation"
-    monkeypatch.setattr(plain, lambda whole, *_: whole)
+    """Without the clean-up."""
+    monkeypatch.setattr("motiondiff_edu.performers.joined.clean_up", lambda whole, *_: whole)
+
+
+def without_blending(monkeypatch) -> None:
+    """Without the part of the clean-up that joins the seam."""
+    monkeypatch.setattr("motiondiff_edu.motion.cleanup.blend_seams", lambda whole, *_: whole)
 
 
 def test_a_usual_walk_keeps_its_body_and_stands_and_nothing_is_said(walker, usual, monkeypatch):
@@ -85,7 +89,7 @@ def test_a_usual_walk_keeps_its_body_and_stands_and_nothing_is_said(walker, usua
 def test_an_unusual_past_is_named_and_joined_without_a_jump(walker, unusual, monkeypatch):
     with pytest.warns(MotionWarning, match=r"reaching: the poses to continue are unlike .*Hand"):
         more = walker.walk(unusual, AHEAD, progress=False)
-    monkeypatch.setattr("motiondiff_edu.performers.joined.JUMP", np.inf)
+    without_blending(monkeypatch)
     with pytest.warns(MotionWarning, match="standard deviations away"):
         plain = walker.walk(unusual, AHEAD, progress=False)
     assert step(unusual, plain) > 0.2 and step(unusual, more) < JUMP
@@ -190,7 +194,7 @@ def test_a_hand_that_jumps_out_of_stillness_is_blended_while_a_foot_swings(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", MotionWarning)
         more = walker.walk(waiting, AHEAD, progress=False)
-        monkeypatch.setattr("motiondiff_edu.performers.joined.JUMP", np.inf)
+        without_blending(monkeypatch)
         plain = walker.walk(waiting, AHEAD, progress=False)
     assert step(waiting, plain) > 2 * JUMP > 2 * step(waiting, more)
     whole = np.concatenate([waiting.positions, plain.positions])

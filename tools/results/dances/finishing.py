@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float
 
+from motiondiff_edu.motion.cleanup import Body, clean_up
 from motiondiff_edu.performers.dance_windows import FPS
-from motiondiff_edu.performers.finished import finished_performance
 
 from ..walks.scores import Measure
 from .scores import Beats, beat_measures, bone_measure, rows_of
@@ -22,7 +22,9 @@ def finishing_measures(
     beats: Beats,
 ) -> list[Measure]:
     """The KINDS of finished dances, named `finished.KIND`; R dances to each song."""
-    whole = np.stack([[finished_performance(one, FPS, bones) for one in song] for song in made])
+    whole = np.stack(
+        [[clean_up(one, FPS, body=Body.of(one, bones=bones)) for one in song] for song in made]
+    )
     return [
         replace(measure, name=f"{FINISHED}{measure.name}")
         for measure in (*beat_measures(rows_of(whole, beats), data), bone_measure(whole)[0])

@@ -156,7 +156,7 @@ def finishing(records: dict[str, dict]) -> str:
     text = (
         "\nThe measures of the dancer are of the network's own dances. `dance` gives the bones the "
         "lengths that they have in the data, and holds standing feet "
-        "(`performers/finished.py`).\n\n"
+        "(`motion/cleanup`).\n\n"
     )
     return text + _kinds_table(records, "the dance", dances, ENDED)
 

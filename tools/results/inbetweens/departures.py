@@ -14,7 +14,7 @@ import torch
 from jaxtyping import Bool, Float
 
 from motiondiff_edu.beyond.guidance import guided
-from motiondiff_edu.editing.inbetween import finished, inbetween
+from motiondiff_edu.editing.inbetween import clean_samples, inbetween
 from motiondiff_edu.editing.inpaint import WEIGHT, Steer, blend, guide_and_blend, inpaint
 from motiondiff_edu.metrics.bone_lengths import bone_lengths
 from motiondiff_edu.metrics.keyframes import seam_jump, unknown_error
@@ -33,23 +33,13 @@ SHOWN, NOT_SHOWN = "inbetweener", "unconditional"  # the networks' names
 Fill = Callable[..., Float[np.ndarray, "S T J 3"]]
 
 
-def without(correction: str) -> Fill:
-    """`inbetween` without one correction of `finished`."""
-
-    def fill(network: Inbetweener, positions, known, *, samples, steps, generator):
-        made = network.fill(positions, known, samples=samples, steps=steps, generator=generator)
-        return finished(made, positions, known, **{correction: False})
-
-    return fill
-
-
 def masked(steer: Steer) -> Fill:
-    """Masked sampling with a steered denoiser, and all corrections."""
+    """Masked sampling with a steered denoiser, and the clean-up."""
 
     def fill(network: Dancer, positions, known, *, samples, steps, generator):
         how = {"samples": samples, "steps": steps, "generator": generator}
         made = inpaint(network, positions, known, steer=steer, **how)
-        return finished(made, positions, known)
+        return clean_samples(made, known)
 
     return fill
 
@@ -71,9 +61,7 @@ class Row:
 
 ROWS = {
     "ours": Row("all departures", inbetween),
-    "no-bones": Row("bones may change their length", without("bones")),
-    "no-feet": Row("feet may slide", without("feet")),
-    "no-clearance": Row("feet at any height", without("clearance")),
+    "no-clean-up": Row("no clean-up of seams, bones and feet", Inbetweener.fill),
     "not-shown": Row(
         "a network that is not shown what is given", masked(guide_and_blend), NOT_SHOWN
     ),

@@ -1,9 +1,9 @@
 """Continuations of recordings by the shipped walker: do they jump at the seam, and what follows?
 
 Windows of six seconds from files of several collections: two seconds are given, and the walker goes
-on for four as fast as the person went in the last second. Once as `Walker.walk` does it, once
-without the steps of dragged feet, and once as the network has it: without blending, steady bones
-and held feet either. The recording's own next four seconds stand beside them.
+on for four as fast as the person went in the last second. Once as `Walker.walk` does it, and once
+as the network has it, without the clean-up. The recording's own next four seconds stand beside
+them.
 """
 
 import warnings
@@ -17,6 +17,7 @@ from motiondiff_edu import rollout
 from motiondiff_edu.metrics.adherence import adherence
 from motiondiff_edu.metrics.seams import seam_over_motion, seam_over_past, seam_step
 from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.motion.cleanup import clean_up
 from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.motion.root_frame import (
     FPS,
@@ -24,8 +25,7 @@ from motiondiff_edu.motion.root_frame import (
     to_root_frame,
 )
 from motiondiff_edu.motion.skeleton import J
-from motiondiff_edu.performers.finished import finished_continuation, held_continuation
-from motiondiff_edu.performers.joined import JUMP, Start, blended
+from motiondiff_edu.performers.joined import Start, placed
 from motiondiff_edu.performers.performer import generators
 from motiondiff_edu.performers.walker import STEPS, Walker
 
@@ -35,6 +35,7 @@ from .windows import SECONDS, RecordedSize, amounts, recorded, trials
 
 GIVEN = 2.0  # seconds of a window
 EARLY = 1.0  # seconds after the seam
+JUMP = 0.05  # m in a frame more than beside the seam: a jump that one sees
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,16 +67,15 @@ class Continued:
 
 
 def continued(walker: Walker, window: Window) -> dict[str, Continued]:
-    """As `Walker.walk` has it, and the same sample with less done to it."""
+    """As `Walker.walk` has it, and the same sample without the clean-up."""
     T_h = walker.config.T_h
     start = Start.of(window.given, window.control, T_h)
     past, steer = start.past.reshape(T_h, -1), start.control
     new = rollout.generate(walker, past[None], steer[None], generator=generators(0, 1), steps=STEPS)
     poses, path = new[0].double().numpy().reshape(-1, J, 3), start.path[T_h:]
-    whole, known, _ = blended(start, poses)
+    whole, known = placed(start, poses)
     worlds = {
-        "real.": finished_continuation(whole, FPS, known)[-len(poses) :],
-        "real.dragged.": held_continuation(whole, FPS, known)[-len(poses) :],
+        "real.": clean_up(whole, FPS, known)[-len(poses) :],
         "real.unblended.": start.in_world(poses),
     }
     return {name: Continued(world, path) for name, world in worlds.items()}
@@ -141,7 +141,7 @@ def measures_of(rows: dict[str, np.ndarray], sources: list[str]) -> list[Measure
 
 
 def recorded_records(walker: Walker, weights: str, size: RecordedSize, command: str) -> list[dict]:
-    """The measures of continuations: `real.`, `real.dragged.` and `real.unblended.`.
+    """The measures of continuations: `real.` and `real.unblended.`.
 
     And those of the recordings themselves (`real.recording.`).
     """

@@ -16,7 +16,7 @@ import torch
 from jaxtyping import Bool, Float
 
 from motiondiff_edu.baselines.interpolation import linear, spherical
-from motiondiff_edu.editing.inbetween import finished
+from motiondiff_edu.editing.inbetween import clean_samples
 from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.editing.plausible import each_until_plausible
 from motiondiff_edu.metrics.keyframes import energy_score, unknown_error
@@ -62,7 +62,7 @@ def filled(
 
     def generate(some, remainder):
         how = {"samples": len(some), "steps": STEPS, "remainder": remainder, "generator": some}
-        return finished(inbetweener.fill(truth, known, **how), truth, known)
+        return clean_samples(inbetweener.fill(truth, known, **how), known)
 
     raw = list(generate(draws, 1.0))
     made, notes = zip(*each_until_plausible(raw, draws, truth, known, generate), strict=True)

@@ -8,7 +8,6 @@ from .trainings import VARIANTS
 # the beginnings of names
 STARTS = {
     "as shipped": "real.",
-    "dragged feet as they are": "real.dragged.",
     "as the network has it": "real.unblended.",
     "the recording itself": "real.recording.",
 }
@@ -157,14 +156,12 @@ def continued(records: dict[str, dict]) -> str:
     text = (
         f"The walker continues {seeds['windows']} windows of {seeds['files']} recordings of "
         f"{seeds['persons']} persons for four seconds, at the speed of their last second: walks, "
-        "dances, martial arts, climbing, washing. It was trained on synthetic walks alone. Where "
-        "the first new frame jumps, which "
-        f"is in {number(100 * share['value'])} % of the windows, the first half second takes over "
-        "pose and speed of the recording, or more if a joint has far to go "
-        "(`beyond/inertialize.py`), and a warning says so where a joint would jump by more than "
-        f"{100 * FAR:g} cm. In all of them bones keep the recording's lengths, and feet that stand "
-        "are held (`performers/finished.py`). A leg that must get from a kneeling pose to a walk "
-        "still slides on the way.\n\n"
+        "dances, martial arts, climbing, washing. It was trained on synthetic walks alone. The "
+        "first new frame of the network jumps in "
+        f"{number(100 * share['value'])} % of the windows. The clean-up blends the seam, keeps the "
+        "recording's bones and holds feet that stand (`motion/cleanup`); a warning says where a "
+        f"joint would jump by more than {100 * FAR:g} cm. A leg that must get from a kneeling pose "
+        "to a walk still slides on the way.\n\n"
     )
     persons = (
         "\nStyle is trunk lean, step width, arm swing and cadence (`metrics/gait_style.py`): of "

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from data_synth.walking import random_control, walk
-from motiondiff_edu.beyond.constant_bones import PELVIS, TRUNK, Lengths, steady_bones
 from motiondiff_edu.editing.masks import body_part, gap, keyframes
 from motiondiff_edu.metrics.bone_lengths import bone_lengths
+from motiondiff_edu.motion.cleanup.bones import PELVIS, TRUNK, Body, clean_bones
 from motiondiff_edu.motion.skeleton import joint_index
 
 
@@ -41,10 +41,10 @@ def test_bones_are_as_long_as_where_they_are_given(clip, mask):
     shaken = np.where(
         known[..., None], clip, clip + 0.04 * np.random.default_rng(1).standard_normal(clip.shape)
     )
-    lengths = Lengths.of(shaken, known)
-    fixed = steady_bones(np.stack([shaken, shaken]), known, lengths)
+    body = Body.of(shaken, known)
+    fixed = clean_bones(np.stack([shaken, shaken]), known, body)
     assert np.array_equal(fixed[0][known], clip[known]) and np.array_equal(fixed[0], fixed[1])
-    given = ~np.isnan(lengths.bones)
+    given = ~np.isnan(body.bones)
     off = np.abs(bone_lengths(fixed)[..., given] - bone_lengths(clip)[0][given])
     assert (
         off.max()
@@ -55,41 +55,42 @@ def test_bones_are_as_long_as_where_they_are_given(clip, mask):
 
 
 def test_a_motion_with_right_bones_stays_as_it_is(clip):
-    lengths = Lengths.of(clip, np.ones(clip.shape[:2], bool))
-    np.testing.assert_allclose(steady_bones(clip, gap(len(clip), 5, 9), lengths), clip, atol=1e-3)
+    body = Body.of(clip, np.ones(clip.shape[:2], bool))
+    np.testing.assert_allclose(clean_bones(clip, gap(len(clip), 5, 9), body), clip, atol=1e-3)
 
 
 def test_bones_that_are_never_given_are_left_alone(clip):
     known = body_part(len(clip), "trajectory")
-    lengths = Lengths.of(clip, known)
-    assert all(np.isnan(one).all() for one in (lengths.bones, lengths.pelvis, lengths.trunk))
+    body = Body.of(clip, known)
+    assert all(np.isnan(one).all() for one in (body.bones, body.pelvis, body.trunk))
     shaken = clip + 0.01
-    assert np.array_equal(steady_bones(shaken, known, lengths), shaken)
+    assert np.array_equal(clean_bones(shaken, known, body), shaken)
 
 
 def test_a_body_is_completed_in_its_own_size(clip):
     known = body_part(len(clip), "lower body")
-    tall = Lengths.of(np.stack([clip, 1.2 * clip]), known).completed()
+    tall = Body.of(np.stack([clip, 1.2 * clip]), known).completed()
     np.testing.assert_allclose(tall.bones, np.outer([1.0, 1.2], bone_lengths(clip)[0]), rtol=1e-6)
     np.testing.assert_allclose(tall.pelvis[0], apart(clip, PELVIS)[0], atol=2e-3)
     np.testing.assert_allclose(tall.pelvis[1], 1.2 * tall.pelvis[0])
-    nothing = Lengths.of(clip, known & False).completed()
+    nothing = Body.of(clip, known & False).completed()
     np.testing.assert_allclose(nothing.bones, bone_lengths(clip)[0], rtol=1e-6)
-    given = Lengths.of(1.3 * clip, known | True)
+    given = Body.of(1.3 * clip, known | True)
     assert np.array_equal(given.completed().bones, given.bones)  # what is known stays
 
 
 def test_lengths_are_those_of_the_given_frames_of_each_motion(clip):
     known = keyframes(len(clip), 10)
     wrong = np.where(known[..., None], clip, 0.0)
-    lengths = Lengths.of(np.stack([wrong, 2 * wrong]), known)
-    np.testing.assert_allclose(lengths.bones[0], bone_lengths(clip)[0], atol=1e-9)
-    np.testing.assert_allclose(lengths.bones[1], 2 * lengths.bones[0])
+    body = Body.of(np.stack([wrong, 2 * wrong]), known)
+    np.testing.assert_allclose(body.bones[0], bone_lengths(clip)[0], atol=1e-9)
+    np.testing.assert_allclose(body.bones[1], 2 * body.bones[0])
     least = apart(clip[known.all(1)], TRUNK).min(0)
-    np.testing.assert_allclose(lengths.trunk[0], least)
-    one = Lengths.of(clip, known)
-    thin = one.with_bones(np.ones(20))
-    assert (thin.bones == 1).all() and thin.pelvis is one.pelvis
+    np.testing.assert_allclose(body.trunk[0], least)
+    thin = Body.of(wrong, known, bones=np.ones(20))
+    assert (thin.bones == 1).all()
+    np.testing.assert_allclose(thin.trunk, least)
+    assert np.array_equal(Body.of(clip).bones, Body.of(clip, known | True).bones)
 
 
 def apart(positions, pairs):
@@ -101,10 +102,10 @@ def apart(positions, pairs):
 def test_hips_and_spine_keep_their_distances(clip):
     known = gap(len(clip), 5, 45)
     shaken = clip + 0.03 * np.random.default_rng(0).standard_normal(clip.shape)
-    lengths = Lengths.of(clip, known)
-    fixed = steady_bones(shaken, known, lengths)[5:45]
-    assert np.abs(apart(fixed, PELVIS) - lengths.pelvis).max() < 2e-3
-    assert np.abs(apart(shaken, PELVIS)[5:45] - lengths.pelvis).max() > 0.05
+    body = Body.of(clip, known)
+    fixed = clean_bones(shaken, known, body)[5:45]
+    assert np.abs(apart(fixed, PELVIS) - body.pelvis).max() < 2e-3
+    assert np.abs(apart(shaken, PELVIS)[5:45] - body.pelvis).max() > 0.05
 
 
 def test_a_trunk_that_came_out_too_short_is_not_folded(clip):
@@ -113,16 +114,16 @@ def test_a_trunk_that_came_out_too_short_is_not_folded(clip):
     short = np.array(clip)
     short[:, trunk, 1] -= (short[:, trunk, 1] - short[:, :1, 1]) / 3
     short[:, trunk] += 0.01 * np.random.default_rng(0).standard_normal((len(clip), 4, 3))
-    lengths = Lengths.of(clip, known)
-    bones_alone = replace(lengths, trunk=np.full(3, np.nan), pelvis=np.full(3, np.nan))
+    body = Body.of(clip, known)
+    bones_alone = replace(body, trunk=np.full(3, np.nan), pelvis=np.full(3, np.nan))
     folded, straight = (
-        apart(steady_bones(short, known, one)[5:45], TRUNK) / lengths.trunk
-        for one in (bones_alone, lengths)
+        apart(clean_bones(short, known, one)[5:45], TRUNK) / body.trunk
+        for one in (bones_alone, body)
     )
     assert straight.min() > 0.97 and folded.min() < 0.95
 
 
 def test_a_trunk_may_be_straighter_than_where_it_is_given(clip):
-    lengths = Lengths.of(clip, np.ones(clip.shape[:2], bool))
-    bent = replace(lengths, trunk=0.8 * lengths.trunk)
-    np.testing.assert_allclose(steady_bones(clip, gap(len(clip), 5, 9), bent), clip, atol=1e-3)
+    body = Body.of(clip, np.ones(clip.shape[:2], bool))
+    bent = replace(body, trunk=0.8 * body.trunk)
+    np.testing.assert_allclose(clean_bones(clip, gap(len(clip), 5, 9), bent), clip, atol=1e-3)
