@@ -6,7 +6,7 @@ row.
 Source: MoFusion 4.4, and `motiondiff_edu.beyond`.  Notebook: 15
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import torch
@@ -18,7 +18,8 @@ from motiondiff_edu.metrics.keyframes import seam_jump, unknown_error
 from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.performers.dancer import Dancer
 
-from ..walks.scores import Measure, measure_of, ratio, root_mean
+from ..sweep import Rows, Sweep, Variant, minus
+from ..walks.scores import Kind, ratio, root_mean
 from ..walks.trials import UNSEEN
 from .inbetween import InbetweenSize, middle, trials
 
@@ -27,57 +28,54 @@ GAP = 30  # frames
 SHOWN, NOT_SHOWN = "inbetweens", "unconditional"  # the networks' names
 
 
-@dataclass(frozen=True)
-class Row:
-    """What a row is in words, its departures, its network, and the row that it departs from."""
-
-    words: str
-    departures: Departures
-    network: str = SHOWN
-    base: str = "ours"
+def row(words: str, departures: Departures, network: str = SHOWN, base: str = "ours") -> Variant:
+    """What a row is in words, its network and departures, and the row that it departs from."""
+    return Variant(words, (network, departures), {"base": base} if base else {})
 
 
-ROWS = {
-    "ours": Row("all departures", OURS),
-    "no-bones": Row("bones may change their length", replace(OURS, bones=False)),
-    "no-feet": Row("feet may slide", replace(OURS, feet=False)),
-    "no-clearance": Row("feet at any height", replace(OURS, clearance=False)),
-    "not-shown": Row("a network that is not shown what is given", OURS, NOT_SHOWN),
-    "no-guidance": Row(
+VARIANTS = {
+    "ours": row("all departures", OURS, base=""),
+    "no-bones": row("bones may change their length", replace(OURS, bones=False)),
+    "no-feet": row("feet may slide", replace(OURS, feet=False)),
+    "no-clearance": row("feet at any height", replace(OURS, clearance=False)),
+    "not-shown": row("a network that is not shown what is given", OURS, NOT_SHOWN),
+    "no-guidance": row(
         "the same, no guidance", replace(OURS, guidance=0.0), NOT_SHOWN, "not-shown"
     ),
-    "no-blending": Row("the same, no blending", replace(OURS, blend=None), NOT_SHOWN, "not-shown"),
-    "paper": Row("none of them: masked sampling", PAPER, NOT_SHOWN),
+    "no-blending": row("the same, no blending", replace(OURS, blend=None), NOT_SHOWN, "not-shown"),
+    "paper": row("none of them: masked sampling", PAPER, NOT_SHOWN),
 }
+ERROR = Kind("cm", ("error",), np.mean)
+SLIDING = Kind("m/s", ("skating",), np.nanmean)
+KINDS = {
+    "error_one_cm": ERROR,
+    "seam_jump_over_data": Kind("ratio", ("seam", "seam_data"), ratio),
+    "bone_rmse_cm": Kind("cm", ("bones",), root_mean),
+    "skating_mps": SLIDING,
+}
+DIFFERENCES = {"error_one_minus_{}_cm": minus(ERROR), "skating_minus_{}_mps": minus(SLIDING)}
 
 
-def departure_records(
-    networks: dict[str, tuple[Dancer, str]], size: InbetweenSize, command: str
-) -> list[dict]:
-    """The measures of every row, and those minus the row that it departs from.
-
-    `networks` has each network's dancer and the digest of its weights.
-    """
+def sweep(networks: dict[str, tuple[Dancer, str]], size: InbetweenSize) -> Sweep:
+    """Nothing is trained: `networks` has each network's dancer and the digest of its weights."""
     truth, known = trials(size.motions), middle(GAP)
-    seeds = {"data": UNSEEN, "motions": size.motions, "samples": size.samples}
-    seeds |= {"steps": size.steps, "gap": GAP}
-    rows, records = {}, []
-    for name, row in ROWS.items():
-        dancer, weights = networks[row.network]
+
+    def measure(name: str, dancer: Dancer, seed: int) -> Rows:
         draw = torch.Generator().manual_seed(GAP)
-        made = [
-            inbetween(
-                dancer, np.where(known[..., None], one, np.nan), known, samples=size.samples,
-                steps=size.steps, departures=row.departures, generator=draw,
-            )
-            for one in truth
-        ]  # fmt: skip
-        rows[name] = rows_of(np.stack(made, 1), truth, known)
-        records += [
-            one.as_record(f"inbetween-departures.{name}.", seeds | {"weights": weights}, command)
-            for one in measures_of(rows[name], rows[row.base])
-        ]
-    return records
+        how = {"samples": size.samples, "steps": size.steps, "generator": draw}
+        how["departures"] = VARIANTS[name].recipe[1]
+        holes = np.where(known[..., None], truth, np.nan)
+        made = np.stack([inbetween(dancer, one, known, **how) for one in holes], 1)
+        return rows_of(made, truth, known)
+
+    def about(name: str) -> dict:
+        found = {"data": UNSEEN, "motions": size.motions, "samples": size.samples, "gap": GAP}
+        return found | {"steps": size.steps, "weights": networks[VARIANTS[name].recipe[0]][1]}
+
+    return Sweep(
+        "inbetween-departures", VARIANTS, lambda name, seed: networks[VARIANTS[name].recipe[0]][0],
+        measure, KINDS, DIFFERENCES, about,
+    )  # fmt: skip
 
 
 def rows_of(
@@ -99,15 +97,3 @@ def rows_of(
         "bones": wrong,
         "skating": np.nanmean(sliding, 0),
     }
-
-
-def measures_of(rows: dict[str, np.ndarray], base: dict[str, np.ndarray]) -> list[Measure]:
-    """Error of a sample, jump at the seams over the data's, bone error, sliding of planted feet."""
-    return [
-        measure_of("error_one_cm", "cm", np.mean, rows["error"]),
-        measure_of("seam_jump_over_data", "ratio", ratio, rows["seam"], rows["seam_data"]),
-        measure_of("bone_rmse_cm", "cm", root_mean, rows["bones"]),
-        measure_of("skating_mps", "m/s", np.nanmean, rows["skating"]),
-        measure_of("error_one_minus_base_cm", "cm", np.mean, rows["error"] - base["error"]),
-        measure_of("skating_minus_base_mps", "m/s", np.nanmean, rows["skating"] - base["skating"]),
-    ]

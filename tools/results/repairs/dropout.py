@@ -13,14 +13,17 @@ from pathlib import Path
 import numpy as np
 
 from motiondiff_edu.metrics.adherence import adherence
+from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.recipes.train_walker import train, training_clips
 from motiondiff_edu.recipes.walkers import MEND_PLAIN, Recipe
 
+from ..intervals import interval_over_seeds
+from ..sweep import Rows, Sweep, Variant
 from ..walks.parts import weights_digest
-from ..walks.scores import Measure, root_mean, squared_bone_error
+from ..walks.scores import Kind, Measure, root_mean, squared_bone_error
 from ..walks.trials import UNSEEN, Trials
-from .trials import SHARE, continued, interval_over_seeds, names_of
+from .trials import SHARE, continued, names_of
 
 NEXT = 10  # frames
 SHARES = (0.0, 0.15, 0.3, 0.5, 0.7, 1.0)  # of the joints missing
@@ -140,17 +143,26 @@ MAP_FULL = MapBudget()
 MAP_QUICK = MapBudget(steps=3, clips=2, save_every=2)
 
 
+VARIANTS = {
+    name: Variant("no dropout" if rate == 0 else f"a rate of {rate:.0%}", rate)
+    for name, rate in RATES.items()
+}
+KINDS = {
+    f"missing-{round(100 * share)}.{kind}_{unit}": Kind(
+        "cm" if unit == "cm" else "m/s", (f"{kind}-{round(100 * share)}",), mean
+    )
+    for share in SHARES
+    for kind, (unit, mean) in MEASURES.items()
+}
+
+
 def map_recipe(name: str, budget: MapBudget) -> Recipe:
     """The recipe of a walker with one constant rate of dropout."""
-    rate = RATES[name]
-    sizes = {"steps": budget.steps, "clips": budget.clips, "save_every": budget.save_every}
+    rate = VARIANTS[name].recipe
     return replace(
-        MEND_PLAIN,
-        name=f"mend-map.{name}",
-        dropout=(rate,) if rate else (),
-        dropout_start=0.0,
-        **sizes,
-    )
+        MEND_PLAIN, name=f"mend-map.{name}", dropout=(rate,) if rate else (), dropout_start=0.0,
+        steps=budget.steps, clips=budget.clips, save_every=budget.save_every,
+    )  # fmt: skip
 
 
 @cache
@@ -158,34 +170,23 @@ def _clips(budget: MapBudget):
     return training_clips(map_recipe("00", budget))
 
 
-def map_records(
-    name: str, budget: MapBudget, trials: Trials, runs: Path, command: str
-) -> list[dict]:
-    """Train (or continue) the walker of one rate.
+def sweep(budget: MapBudget, runs: Path, trials: Trials) -> Sweep:
+    """A walker for each rate, measured for every share of missing joints."""
 
-    It is measured for every share of missing joints.
-    """
-    runs.mkdir(parents=True, exist_ok=True)
-    recipe = map_recipe(name, budget)
-    walker = train(recipe, runs / f"{name}.safetensors", _clips(budget))
-    seeds = {
-        "data": UNSEEN,
-        "clips": len(trials.past),
-        "frames": NEXT,
-        "rollouts": 0,
-        "training": recipe.seed,
-    }
-    seeds |= {"trained_steps": budget.steps, "trained_clips": budget.clips}
-    found = []
-    for share in SHARES:
-        one = measured([walker], trials, share)
-        for what, (unit, mean) in MEASURES.items():
-            values = interval_over_seeds(mean, one[what])
-            found.append(
-                Measure(
-                    f"missing-{round(100 * share)}.{what}_{unit}",
-                    *values,
-                    "cm" if unit == "cm" else "m/s",
-                )
-            )
-    return [measure.as_record(f"mend-map.{name}.", seeds, command) for measure in found]
+    def trained(name: str, seed: int) -> Walker:
+        runs.mkdir(parents=True, exist_ok=True)
+        return train(map_recipe(name, budget), runs / f"{name}.safetensors", _clips(budget))
+
+    def measure(name: str, walker: Walker, seed: int) -> Rows:
+        found = {share: measured([walker], trials, share) for share in SHARES}
+        return {
+            f"{kind}-{round(100 * share)}": one[kind][0]
+            for share, one in found.items()
+            for kind in MEASURES
+        }
+
+    def about(name: str) -> dict:
+        found = {"data": UNSEEN, "clips": len(trials.past), "frames": NEXT, "rollouts": 0}
+        return found | {"trained_steps": budget.steps, "trained_clips": budget.clips}
+
+    return Sweep("mend-map", VARIANTS, trained, measure, KINDS, about=about)

@@ -6,7 +6,7 @@ Each part is a list of records and one JSON file.
 import hashlib
 import json
 from dataclasses import asdict, dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +14,7 @@ from safetensors import safe_open
 
 from motiondiff_edu._files import replacing
 from motiondiff_edu.metrics.footsteps import PAPER, ROBUST
+from motiondiff_edu.modiff import MoDiffConfig
 from motiondiff_edu.pretrained import checkpoints
 
 from . import steps_table
@@ -162,6 +163,13 @@ LINES = {
 }
 
 
+def size_of_network(config: MoDiffConfig) -> str:
+    """Width, feed-forward and layers of MoDiff: motion, control, cross-modal, decoder."""
+    layers = config.motion_layers, config.control_layers, config.cross_layers, config.decoder_layers
+    named = "/".join(map(str, layers))
+    return f"width {config.width}, feed-forward {config.hidden}, layers {named}"
+
+
 def kept_records(folder: Path, name: str) -> list[dict]:
     """The records of a part; none if it was not measured yet."""
     kept = folder / f"{name}.json"
@@ -189,8 +197,17 @@ def as_record(
     else:
         seeds |= {"data": UNSEEN, "clips": size.clips, "seconds": size.seconds}
     if line:
-        seeds |= {"weights": weights_digest(bench.weights[line.name]), "steps": line.steps or "all"}
+        seeds |= _about_weights(bench.weights[line.name]) | {"steps": line.steps or "all"}
     return measure.as_record(prefix, seeds, command, _paper_bones(prefix + measure.name))
+
+
+@cache
+def _about_weights(path: Path) -> dict:
+    """The digest of a walker's weights, the size of its network, and how long it was trained."""
+    walker = checkpoints.load_walker(path)
+    recipe = walker.card.get("recipe", {})
+    about = {"weights": weights_digest(path), "network": size_of_network(walker.config)}
+    return about | {"trained_steps": recipe.get("steps"), "rate": recipe.get("lr")}
 
 
 def _paper_bones(name: str) -> float | None:

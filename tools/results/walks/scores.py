@@ -6,7 +6,7 @@ Names, values, units.
 """
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,6 +50,29 @@ class Measure:
             paper=paper,
             command=command,
         )
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A measure: its unit, the rows that it is computed from, and the function of them."""
+
+    unit: str
+    rows: tuple[str, ...]
+    value: Callable[..., float]
+
+
+def measures(
+    kinds: Mapping[str, Kind], rows: Mapping[str, np.ndarray], groups: np.ndarray | None = None
+) -> list[Measure]:
+    """The measures of rows that have a number for each clip, with intervals over clips or groups.
+
+    Those whose rows are not there are left out.
+    """
+    return [
+        measure_of(name, kind.unit, kind.value, *(rows[key] for key in kind.rows), groups=groups)
+        for name, kind in kinds.items()
+        if set(kind.rows) <= set(rows)
+    ]
 
 
 def squared_bone_error(poses: Float[np.ndarray, "N T J 3"]) -> Float[np.ndarray, "N"]:
@@ -119,7 +142,13 @@ def diversity(
     ]
 
 
-def measure_of(name: str, unit: str, value: Callable[..., float], *rows: np.ndarray) -> Measure:
+def measure_of(
+    name: str,
+    unit: str,
+    value: Callable[..., float],
+    *rows: np.ndarray,
+    groups: np.ndarray | None = None,
+) -> Measure:
     """The number `value(*rows)` with its interval over the rows.
 
     It is NaN, without a warning, when there is no number.
@@ -128,7 +157,7 @@ def measure_of(name: str, unit: str, value: Callable[..., float], *rows: np.ndar
         warnings.simplefilter(
             "ignore", RuntimeWarning
         )  # the mean of no numbers is NaN, and is shown as NaN
-        return Measure(name, *interval(value, *rows), unit)
+        return Measure(name, *interval(value, *rows, groups=groups), unit)
 
 
 def root_mean(squares: Float[np.ndarray, "N"]) -> float:
