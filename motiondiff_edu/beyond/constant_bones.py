@@ -5,7 +5,7 @@ are moved until every bone has the length that it has where it is given. Given j
 they are. Hips and spine are fixed to one bone in a body, so their distances are kept, too. With
 distances between neighbours alone, a spine that came out too short would be folded like a ruler:
 joints of the trunk that are two bones apart come no nearer to each other than where they are given.
-Gain: docs/RESULTS.md, *In-betweens* (`inbetween-departures.no-bones.*`).
+Gain: docs/RESULTS_ALL.md (`inbetween-departures.no-bones.*`).
 Source: position-based dynamics (Müller and others, 2007), distances only; MoFusion eq. 6 has the
 same aim, as a loss.
 """

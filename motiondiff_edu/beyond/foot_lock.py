@@ -2,7 +2,7 @@
 
 A network's feet slide by centimetres in each frame, and that is the first fault a viewer sees. Only
 legs are moved, and no given joint. Leave the foot lock out for motions that glide on purpose.
-Gain: docs/RESULTS.md, *In-betweens* (`inbetween-departures.no-feet.*`).
+Gain: docs/RESULTS_ALL.md (`inbetween-departures.no-feet.*`).
 Source: foot-skate cleanup for motion capture (Kovar and others, 2002), shortened.
 """
 

@@ -4,7 +4,7 @@ A toe that is in the same place (SAME) in two keyframes a second apart has hardl
 the recordings of training, by more than 10 cm in two of a hundred such seconds. A network that
 knows walking makes it step nevertheless. So the toe keeps its place, the ankle follows, and the
 knee bends. Given joints stay where they are.
-Gain: docs/RESULTS.md, *In-betweens* (`inbetween-departures.no-feet.*`, with the foot lock).
+Gain: docs/RESULTS_ALL.md (`inbetween-departures.no-feet.*`, with the foot lock).
 Source: ours.
 """
 

@@ -3,7 +3,7 @@
 A network's toes are wrong by centimetres in height. A planted toe hovers, a swinging one passes at
 the height of the floor, and the eye takes the lower one for the one that carries the figure: it
 slides. Bones keep their lengths, and given joints stay where they are.
-Gain: docs/RESULTS.md, *In-betweens* (`inbetween-departures.no-clearance.*`): feet slide a little
+Gain: docs/RESULTS_ALL.md (`inbetween-departures.no-clearance.*`): feet slide a little
 less, and errors are the same; the synthetic walks there have toes that are nearly right.
 Source: ours; people lift a toe by some centimetres as soon as it leaves the floor.
 """
