@@ -21,6 +21,7 @@ from tools.results.inbetweens.inbetween import (
     middle,
     trials,
 )
+from tools.results.sweep import run
 
 GAP = 10
 
@@ -161,7 +162,7 @@ def test_every_way_is_asked_for_what_it_is_for(monkeypatch, truth):
     assert not any(one.known.any() for one in free)
 
 
-def test_departures_are_measured_on_the_same_noise_one_left_out_at_a_time(monkeypatch):
+def test_departures_are_measured_on_the_same_noise_one_left_out_at_a_time(monkeypatch, tmp_path):
     """The networks are replaced by one that stretches the gap where bones may change, and errs.
 
     The one that is not shown what is given errs more, and most without guidance.
@@ -179,17 +180,19 @@ def test_departures_are_measured_on_the_same_noise_one_left_out_at_a_time(monkey
 
     size = InbetweenSize(motions=2, samples=2)
     truth = inbetween.trials(2)
-    left = [one for _ in departures.ROWS for one in truth]
+    left = [one for _ in departures.VARIANTS for one in truth]
     networks = {name: (name, "digest") for name in ("inbetweens", "unconditional")}
     monkeypatch.setattr(departures, "inbetween", made)
+    sweep = departures.sweep(networks, size)
     found = {
         one["name"].removeprefix("inbetween-departures."): one["value"]
-        for one in departures.departure_records(networks, size, "a command")
+        for name in departures.VARIANTS
+        for one in run(sweep, name, tmp_path, "a command")
     }
-    assert len(asked) == 2 * len(departures.ROWS)
-    for k, row in enumerate(departures.ROWS.values()):
+    assert len(asked) == 2 * len(departures.VARIANTS)
+    for k, row in enumerate(departures.VARIANTS.values()):
         one, other = asked[2 * k : 2 * k + 2]
-        assert one[:2] == other[:2] == (row.network, row.departures)
+        assert one[:2] == other[:2] == row.recipe
         assert [one[2], other[2]] == [noise for _, _, noise in asked[:2]]
     assert found["ours.error_one_cm"] == pytest.approx(1.0)
     assert found["not-shown.error_one_cm"] == pytest.approx(2.0)
@@ -200,5 +203,5 @@ def test_departures_are_measured_on_the_same_noise_one_left_out_at_a_time(monkey
     tenth = 0.1 * np.sqrt((lengths**2).mean())
     assert found["no-bones.bone_rmse_cm"] == pytest.approx(tenth, rel=0.01)
     assert found["ours.bone_rmse_cm"] < 0.01 < found["paper.bone_rmse_cm"]
-    rows = departures.ROWS.values()
-    assert len({(row.network, row.departures) for row in rows}) == len(rows)
+    rows = [row.recipe for row in departures.VARIANTS.values()]
+    assert len(set(rows)) == len(rows)

@@ -16,11 +16,11 @@ from motiondiff_edu.metrics.bone_lengths import bone_rmse
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import JOINTS
 from motiondiff_edu.reconstruction import plain_way_back
-from tools.results.repairs import both, repair, tables
+from tools.results.repairs import both, repair
 from tools.results.repairs import dropout as dropout_part
 from tools.results.repairs import rivals as rivals_part
 from tools.results.repairs.rivals import rivals
-from tools.results.repairs.trials import as_given, interval_over_seeds, names_of, without
+from tools.results.repairs.trials import as_given, names_of, without
 from tools.results.walks.trials import unseen
 
 
@@ -62,15 +62,6 @@ def test_missing_joints_are_zero_once_standardised(trials):
     np.testing.assert_allclose(
         past[known].numpy(), trials.past.reshape(5, 10, 63)[known.numpy()], rtol=1e-5, atol=1e-6
     )
-
-
-def test_the_interval_is_over_trainings_as_well_as_clips():
-    alike = np.tile(np.linspace(0, 1, 40), (3, 1))
-    apart = alike + np.array([[-2.0], [0.0], [2.0]])
-    value, low, high = interval_over_seeds(np.mean, alike)
-    assert value == pytest.approx(0.5) and low < 0.5 < high and high - low < 0.3
-    wide = interval_over_seeds(np.mean, apart)
-    assert wide[0] == pytest.approx(0.5) and wide[1] < -0.5 and wide[2] > 1.5
 
 
 def test_gains_and_cost_by_hand():
@@ -154,33 +145,6 @@ def test_repairs_of_a_walker_that_stands_are_the_mean_pose(trials):
     assert found["arm_rmse_over_ridge"].value == pytest.approx(
         found["arm_rmse_cm"].value / found["arm_rmse_ridge_cm"].value
     )
-
-
-def test_the_tables_say_what_the_records_say(tmp_path):
-    sections = (tables.dropout, tables.repairs, tables.inbetweens)
-    assert [section({}, tmp_path) for section in sections] == ["", "", ""]
-    seeds = {"trainings": 3, "frames": 10, "clips": 7, "missing": 0.3}
-
-    def one(name, value):
-        return dict(
-            name=name,
-            value=value,
-            low=value,
-            high=value,
-            seeds=seeds,
-            unit="cm",
-            paper=None,
-            command="",
-        )
-
-    names = [
-        "mend.pairs_dropout_cost_complete",
-        "mend.plain_missing_bone_cm",
-        "mend.dropout_missing_bone_cm",
-    ]
-    records = {name: one(name, 1.25 + k) for k, name in enumerate(names)}
-    said = tables.dropout(records, tmp_path)
-    assert "| missing | bone | - | - | 2.25 cm | 3.25 cm |" in said and "7 unseen pasts" in said
 
 
 def test_the_pairs_are_shipped_names():

@@ -49,10 +49,10 @@ from .songs import (
     Songs,
     danced_by_the_data,
     dances_by_the_data,
+    dances_of,
     judged_songs,
     mel_of,
 )
-from .trials import dances_of
 
 LONG = (200, 400)
 WEIGHTS = (1, 2, 4)  # of guidance
@@ -65,10 +65,7 @@ DANCES = {
 }  # weights
 # properties that no song of training has. These songs are the composer's own, in one feel, and so
 # differ from those of training in more than their name says
-UNHEARD = {
-    "metre5": {"metre": 5},
-    "mallets": {"timbre": "mallets"},
-}
+UNHEARD = {"metre5": {"metre": 5}, "mallets": {"timbre": "mallets"}}
 TEMPI_KEPT_OUT = {f"tempo{low:g}-{high:g}": ((low, high),) for low, high in HELD_OUT_TEMPI}
 
 

@@ -17,15 +17,7 @@ from motiondiff_edu.metrics.kinetic_features import kinetic_features
 from motiondiff_edu.metrics.repetition import repeat_score
 from motiondiff_edu.metrics.skating import skating
 
-from ..walks.scores import (
-    FPS,
-    Kind,
-    Measure,
-    measure_of,
-    ratio,
-    root_mean,
-    squared_bone_error,
-)
+from ..walks.scores import FPS, Kind, Measure, measure_of, ratio, root_mean, squared_bone_error
 
 Beats = Sequence[Float[np.ndarray, "_"]]
 

@@ -1,12 +1,12 @@
-"""docs/RESULTS.md and docs/RESULTS_ALL.md, from docs/RESULTS.template.md and all records.
+"""docs/RESULTS.md and docs/RESULTS_ALL.md, from template.md beside this file and all records.
 
 The template is Markdown. In it, `{{name}}` is a record's value, interval and unit, `{{value name}}`
-the value alone, `{{percent name}}` the value times 100, `{{paper name}}` what the paper prints for
-it, and `{{about name key}}` a setting of its measurement. A block `table` is a table: its first
-line is `corner | words => pattern | ...`, the others are rows. A row `words => key` has the records
-whose names are the columns' patterns with the key in the place of `*` (a pattern that ends in
-`@setting` shows that setting; an empty key is written as two quotes). A row `words | cell | ...` is
-written as it is. For blocks `goals` and `claims`, see goals.py and claims.py.
+the value alone, `{{percent name}}` the value times 100, and `{{about name key}}` a setting of its
+measurement. A block `table` is a table: its first line is `corner | words => pattern | ...`, the
+others are rows. A row `words => key` has the records whose names are the columns' patterns with the
+key in the place of `*` (a pattern that ends in `@setting` shows that setting; an empty key is
+written as two quotes). A row `words | cell | ...` is written as it is. For blocks `goals` and
+`claims`, see goals.py and claims.py.
 """
 
 import re
@@ -18,10 +18,10 @@ from motiondiff_edu._files import replacing
 from . import claims, goals, pictures
 from .records import by_name, cell, number, read_files, table
 
-TEMPLATE = Path(__file__).parents[3] / "docs" / "RESULTS.template.md"
+TEMPLATE = Path(__file__).with_name("template.md")
 BLOCK = re.compile(r"^```(table|goals|claims)\n(.*?)^```\n", re.M | re.S)
 PLACE = re.compile(r"\{\{([^{}]+)\}\}")
-VERBS = ("value", "percent", "paper", "about")
+VERBS = ("value", "percent", "about")
 
 
 def render(docs: Path, benchmarks: Path = Path("benchmarks/results")) -> list[str]:
@@ -114,8 +114,6 @@ def _inline(place: str, records: dict[str, dict]) -> str:
         return cell(one, unit=True)
     if verb == "about":
         return _setting(one, setting)
-    if verb == "paper":
-        return number(one["paper"])
     return number(one["value"] * (100 if verb == "percent" else 1))
 
 

@@ -18,11 +18,7 @@ from motiondiff_edu.metrics.adherence import adherence
 from motiondiff_edu.metrics.seams import seam_over_motion, seam_over_past, seam_step
 from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.motion.motion import Motion
-from motiondiff_edu.motion.root_frame import (
-    FPS,
-    control_from_path,
-    to_root_frame,
-)
+from motiondiff_edu.motion.root_frame import FPS, control_from_path, to_root_frame
 from motiondiff_edu.motion.skeleton import J
 from motiondiff_edu.performers.finished import finished_continuation, held_continuation
 from motiondiff_edu.performers.joined import JUMP, Start, blended

@@ -29,7 +29,7 @@ from motiondiff_edu.recipes.walkers import MEND_CONFIG, OURS, LossWeights, Recip
 from ..repairs.trials import SHARE, continued
 from ..sweep import Rows, Sweep, Variant, minus
 from .parts import size_of_network
-from .scores import FPS, Kind, root_mean, squared_bone_error
+from .scores import FPS, WALKS, Kind, ratio_of_roots, root_mean, squared_bone_error
 from .trials import T_H, UNSEEN, Trials
 
 PLAN = Path(__file__).parents[3] / "docs" / "results" / "ladder" / "plan.json"
@@ -154,17 +154,11 @@ def rows_of(walker: Walker, trials: Trials, seed: int) -> Rows:
 
 KINDS = {
     "bone_rmse_cm": Kind("cm", ("bone",), root_mean),
-    "adherence_excess_mps": Kind(
-        "m/s",
-        ("adherence", "adherence_data"),
-        lambda own, data: np.nanmean(own) - np.nanmean(data),
+    "adherence_excess_mps": replace(
+        WALKS["adherence_excess_mps"], rows=("adherence", "adherence_data")
     ),
     "skating_mps": Kind("m/s", ("skating",), np.nanmean),
-    "broken_over_whole": Kind(
-        "ratio",
-        ("bone_broken", "bone"),
-        lambda broken, whole: root_mean(broken) / root_mean(whole),
-    ),
+    "broken_over_whole": Kind("ratio", ("bone_broken", "bone"), ratio_of_roots),
 }
 
 

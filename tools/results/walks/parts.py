@@ -37,14 +37,6 @@ ROLLING = (
     "pretrained/eight_bits.py",
     "pretrained/weights_file.py",
 )
-# the rows of Table I that our walkers stand beside
-PAPER_ROWS = {
-    "data": "Recorded data",
-    "walker": "MoDiff (drop)",
-    "walker-plain": "MoDiff (no drop)",
-    "walker-printed": "MoDiff (drop)",
-    "walker-eps": "MoDiff (no drop)",
-}
 
 
 @dataclass(frozen=True)
@@ -198,7 +190,7 @@ def as_record(
         seeds |= {"data": UNSEEN, "clips": size.clips, "seconds": size.seconds}
     if line:
         seeds |= _about_weights(bench.weights[line.name]) | {"steps": line.steps or "all"}
-    return measure.as_record(prefix, seeds, command, _paper_bones(prefix + measure.name))
+    return measure.as_record(prefix, seeds, command)
 
 
 @cache
@@ -210,16 +202,8 @@ def _about_weights(path: Path) -> dict:
     return about | {"trained_steps": recipe.get("steps"), "rate": recipe.get("lr")}
 
 
-def _paper_bones(name: str) -> float | None:
-    """Table I's bone RMSE for a record of ours."""
-    who, _, what = name.partition(".")
-    row = PAPER_ROWS.get(who)
-    return steps_table.PAPER_TABLE[row][-1] if row and what == "bone_rmse_cm" else None
-
-
 def footstep_records(bench: Bench, command: str) -> tuple[list[dict], dict[str, np.ndarray]]:
-    """Table I on our data: the recorded walks and every line of walkers; and the curves of Fig.
-    3."""
+    """Table I on our data: the recorded walks and all walkers; and the curves of Fig. 3."""
     sets = {"data": (None, bench.trials.truth)}
     for line in LINES.values():
         if line.name in bench.weights and line.hold:
@@ -234,13 +218,4 @@ def footstep_records(bench: Bench, command: str) -> tuple[list[dict], dict[str, 
                 as_record(f"footsteps{suffix}.{name}.", measure, bench, line, command)
                 for measure in found
             ]
-    for one in records:
-        one["paper"] = _paper_measure(one["name"])
     return records, curves
-
-
-def _paper_measure(name: str) -> float | None:
-    kind, who, what = name.split(".")
-    row = PAPER_ROWS.get(who)
-    column = ("f_est", "v95_cmps", "mean_s", "std_s").index(what)
-    return steps_table.PAPER_TABLE[row][column] if row and kind == "footsteps" else None

@@ -17,14 +17,7 @@ from motiondiff_edu.metrics.sentences import confusion, rows_of
 from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.pretrained.judges import Judge
 
-from ..walks.scores import (
-    Measure,
-    measure_of,
-    over_floor,
-    ratio,
-    root_mean,
-    squared_bone_error,
-)
+from ..walks.scores import Measure, measure_of, over_floor, ratio, root_mean, squared_bone_error
 from .rows import sketch
 from .trials import Pair, Positions, Trials, minimal_pairs
 
