@@ -4,7 +4,6 @@ from functools import partial
 
 import pytest
 
-from tools.results import sweep
 from tools.results.intervals import interval, interval_over_seeds
 from tools.results.walks import scores
 
@@ -13,5 +12,5 @@ from tools.results.walks import scores
 def few_draws():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(scores, "interval", partial(interval, draws=60))
-        patch.setattr(sweep, "interval_over_seeds", partial(interval_over_seeds, draws=60))
+        patch.setattr(scores, "interval_over_seeds", partial(interval_over_seeds, draws=60))
         yield

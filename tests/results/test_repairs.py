@@ -21,6 +21,7 @@ from tools.results.repairs import dropout as dropout_part
 from tools.results.repairs import rivals as rivals_part
 from tools.results.repairs.rivals import rivals
 from tools.results.repairs.trials import as_given, names_of, without
+from tools.results.walks.scores import measures_over_seeds
 from tools.results.walks.trials import unseen
 
 
@@ -65,16 +66,21 @@ def test_missing_joints_are_zero_once_standardised(trials):
 
 
 def test_gains_and_cost_by_hand():
-    plain = {"bone": np.full((3, 6), 9.0), "adherence": np.full((3, 6), 0.5)}
-    dropout = {"bone": np.full((3, 6), 4.0), "adherence": np.full((3, 6), 0.6)}
-    bone, adherence = dropout_part.gains(plain, dropout)
-    assert (bone.name, bone.value, bone.low, bone.high) == (
-        "dropout_gain_bone_cm",
-        *[pytest.approx(1.0)] * 3,
-    )
-    assert adherence.value == pytest.approx(-0.1) and adherence.unit == "m/s"
-    cost = dropout_part.cost("cost", plain, dropout)
-    assert cost.name == "cost" and cost.value == pytest.approx(1.2)  # the larger of 2/3 and 6/5
+    plain, dropout = {"bone": 9.0, "adherence": 0.5}, {"bone": 4.0, "adherence": 0.6}
+    rows = {
+        f"{side}_{past}_{row}": np.full((3, 6), value)
+        for side, values in (("plain", plain), ("dropout", dropout))
+        for past in ("complete", "missing")
+        for row, value in values.items()
+    }
+    kinds = dropout_part.COMPARED | {"cost": dropout_part.COST}
+    found = {one.name: one for one in measures_over_seeds(kinds, rows)}
+    bone, control = (found[f"dropout_gain_{name}"] for name in dropout_part.MEASURES)
+    assert (bone.value, bone.low, bone.high) == (pytest.approx(1.0),) * 3 and bone.unit == "cm"
+    assert control.value == pytest.approx(-0.1) and control.unit == "m/s"
+    assert found["dropout_missing_bone_cm"].value == pytest.approx(2)
+    assert found["plain_complete_adherence_mps"].value == pytest.approx(0.5)
+    assert found["cost"].value == pytest.approx(1.2)  # the larger of 2/3 and 6/5
 
 
 def test_each_comparison_has_names_of_its_own(trials, monkeypatch):
@@ -84,8 +90,8 @@ def test_each_comparison_has_names_of_its_own(trials, monkeypatch):
         dropout_part,
         "measured",
         lambda walkers, trials, share: {
-            kind: np.full((len(walkers), 4), 1 + share + ("plain" in walkers[0]))
-            for kind in dropout_part.MEASURES
+            row: np.full((len(walkers), 4), 1 + share + ("plain" in walkers[0]))
+            for row in ("bone", "adherence")
         },
     )
     weights = {n: n for n in ("walker", "walker-plain", *names_of("plain"), *names_of("dropout"))}

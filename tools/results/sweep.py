@@ -8,7 +8,7 @@ rival variants, on the same seeds and clips.
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +16,10 @@ import numpy as np
 
 from motiondiff_edu._files import replacing
 
-from .intervals import interval_over_seeds
-from .walks.scores import Kind, Measure
+from .walks.scores import Kind, Measure, measures_over_seeds
 
 Rows = Mapping[str, np.ndarray]  # by name: (clips,) of one seed, (seeds, clips) of a variant
+RIVAL = "rival."  # begins the names of a rival's rows
 GROUPS = "group"  # the row that says whose each clip is: its clips are drawn together
 
 
@@ -94,13 +94,11 @@ def records(sweep: Sweep, name: str, folder: Path, command: str) -> list[dict]:
     kept = read_rows(folder / f"{name}.json", sweep.about(name))
     rows = _arrays(kept, kept["seeds"])
     groups = rows[GROUPS][0] if GROUPS in rows else None
-    found = []
-    for kind, how in sweep.kinds.items():
-        mine = [rows[key] for key in how.rows]
-        found.append(Measure(kind, *interval_over_seeds(how.value, *mine, groups=groups), how.unit))
-        if len(kept["seeds"]) > 1:
-            for k, seed in enumerate(sorted(kept["seeds"])):
-                one = float(how.value(*(row[k : k + 1] for row in mine)))
+    found = measures_over_seeds(sweep.kinds, rows, groups)
+    if len(kept["seeds"]) > 1:
+        for k, seed in enumerate(sorted(kept["seeds"])):
+            for kind, how in sweep.kinds.items():
+                one = float(how.value(*(rows[key][k : k + 1] for key in how.rows)))
                 found.append(Measure(f"{kind}.seed{seed}", one, one, one, how.unit))
     for label, rival in sweep.variants[name].rivals.items():
         found += _differences(sweep, kept, label, rival, folder)
@@ -118,14 +116,15 @@ def _differences(sweep: Sweep, kept: dict, label: str, rival: str, folder: Path)
         return []
     mine, theirs = _arrays(kept, seeds), _arrays(other, seeds)
     groups = mine[GROUPS][0] if GROUPS in mine else None
-    found = []
-    for name, how in sweep.differences.items():
-        both = [side[key] for side in (mine, theirs) for key in how.rows]
-        if any(a.shape != b.shape for a, b in zip(both, both[len(how.rows) :], strict=False)):
+    for key in {key for how in sweep.differences.values() for key in how.rows}:
+        if mine[key].shape != theirs[key].shape:
             raise ValueError(f"{sweep.name}: {rival} was measured on other clips: measure it anew")
-        value = interval_over_seeds(how.value, *both, groups=groups)
-        found.append(Measure(name.format(label), *value, how.unit))
-    return found
+    both = mine | {f"{RIVAL}{key}": row for key, row in theirs.items()}
+    kinds = {
+        name.format(label): replace(how, rows=(*how.rows, *(f"{RIVAL}{key}" for key in how.rows)))
+        for name, how in sweep.differences.items()
+    }
+    return measures_over_seeds(kinds, both, groups)
 
 
 def minus(kind: Kind) -> Kind:

@@ -17,7 +17,7 @@ from motiondiff_edu.metrics.diversity import spread
 from motiondiff_edu.metrics.skating import planted_share, skating
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS
 
-from ..intervals import interval
+from ..intervals import interval, interval_over_seeds
 
 FPS = 20
 SKATING_FLOOR = 0.02  # m/s: this is used for data that slide less
@@ -63,6 +63,20 @@ def measures(
         measure_of(name, kind.unit, kind.value, *(rows[key] for key in kind.rows), groups=groups)
         for name, kind in kinds.items()
         if set(kind.rows) <= set(rows)
+    ]
+
+
+def measures_over_seeds(
+    kinds: Mapping[str, Kind], rows: Mapping[str, np.ndarray], groups: np.ndarray | None = None
+) -> list[Measure]:
+    """The same for rows of several trainings, (seeds, clips): intervals are over both."""
+    return [
+        Measure(
+            name,
+            *interval_over_seeds(kind.value, *(rows[key] for key in kind.rows), groups=groups),
+            kind.unit,
+        )
+        for name, kind in kinds.items()
     ]
 
 
