@@ -78,10 +78,18 @@ def test_the_pages_are_those_of_the_records_and_short(root, found):
     assert [name for name in found if f"| `{name}` |" not in every] == []
 
 
-def test_links_of_the_page_lead_to_headings(root):
-    for place, anchor in re.findall(r"\]\(([\w.]*)#([^)]+)\)", TEMPLATE):
-        page = (root / "docs" / (place or "RESULTS.md")).read_text(encoding="utf-8")
-        assert anchor in {on_a_host(one) for one in headings(page)}, (place, anchor)
+def test_links_to_headings_of_the_pages_lead_there(root):
+    """Those of the page itself, and those of notebooks and other pages."""
+    there = {
+        page: {on_a_host(one) for one in headings((root / "docs" / page).read_text("utf-8"))}
+        for page in ("RESULTS.md", "RESULTS_ALL.md")
+    }
+    links = re.findall(r"\]\((RESULTS_ALL\.md|)#([^)]+)\)", TEMPLATE)
+    for path in [*root.glob("notebooks/*.ipynb"), *root.glob("docs/*.md"), root / "README.md"]:
+        text = path.read_text(encoding="utf-8")
+        links += re.findall(r"\]\([./a-z]*(RESULTS(?:_ALL)?\.md)#([^)]+)\)", text)
+    assert len(links) > 8
+    assert [link for link in links if link[1] not in there[link[0] or "RESULTS.md"]] == []
 
 
 def test_all_rungs_of_the_ladder_have_the_size_in_the_head_of_their_table(found):

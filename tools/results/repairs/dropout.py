@@ -133,7 +133,7 @@ class MapBudget:
 
 
 MAP_FULL = MapBudget()
-MAP_QUICK = MapBudget(steps=3, clips=2, save_every=2)
+MAP_QUICK = MapBudget(steps=3, clips=12, save_every=2)
 
 
 VARIANTS = {

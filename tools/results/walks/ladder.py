@@ -114,7 +114,7 @@ class Size:
     budget: float = 1.0
 
 
-FULL, QUICK = Size(), Size(clips=4, seconds=6.5, training=4, budget=0.002)
+FULL, QUICK = Size(), Size(clips=4, seconds=6.5, training=12, budget=0.002)
 
 
 def recipe_of(name: str, seed: int, size: Size) -> Recipe:
