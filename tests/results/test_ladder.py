@@ -52,6 +52,12 @@ def test_steps_are_the_budget_over_the_pace_and_rates_those_that_were_chosen():
     assert about["network"] == "width 64, feed-forward 128, layers 1/1/2/2"
 
 
+def test_a_rung_without_a_pace_says_what_to_add(monkeypatch):
+    monkeypatch.setitem(ladder.VARIANTS, "new", ladder.out("something new"))
+    with pytest.raises(ValueError, match="no pace of new: add the CPU-milliseconds"):
+        ladder.recipe_of("new", 0, ladder.FULL)
+
+
 def test_measures_of_a_rung_by_hand():
     """Root mean squares, differences and ratios of means."""
     keys = ("bone", "bone_broken", "adherence", "adherence_data", "skating")

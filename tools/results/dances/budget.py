@@ -121,8 +121,8 @@ FULL = Budget()
 QUICK = Budget(3, 2, 8.0, batch=3, save_every=2, ear_steps=2, measured=DanceSize(3, 1, 2, 2))
 
 
-def recipe_of(name: str, budget: Budget) -> SongRecipe:
-    """The training of one variant, as `recipes.train_dancer` understands it."""
+def recipe_of(name: str, budget: Budget, seed: int = 0) -> SongRecipe:
+    """The training of one variant with one seed, as `recipes.train_dancer` understands it."""
     config, settings = VARIANTS[name].recipe
     sizes = {
         key: getattr(budget, key) for key in ("steps", "songs", "seconds", "batch", "save_every")
@@ -132,7 +132,7 @@ def recipe_of(name: str, budget: Budget) -> SongRecipe:
     if settings["ear"]:
         alike = {key: sizes[key] for key in ("songs", "seconds", "save_every")}
         settings["ear"] = replace(EAR, steps=budget.ear_steps, **alike)
-    return replace(DANCER_PLAIN, name=f"dance-budget.{name}", **settings)
+    return replace(DANCER_PLAIN, name=f"dance-budget.{name}", seed=seed, **settings)
 
 
 @cache
@@ -154,15 +154,15 @@ def stage(name: str, budget: Budget) -> Stage:
     return Stage(budget.measured, hear=MUSIC_FEATURES.get(name, mel_of))
 
 
-def trained(name: str, budget: Budget, runs: Path) -> Dancer:
+def trained(name: str, seed: int, budget: Budget, runs: Path) -> Dancer:
     """The dancer of one variant.
 
     A run that was killed continues; one that is finished is only read.
     """
     features = name if name in MUSIC_FEATURES else ""
     runs.mkdir(parents=True, exist_ok=True)
-    run, log = runs / f"{name}.safetensors", partial(print, flush=True)
-    return train_dancer(recipe_of(name, budget), run, material(features, budget), log)
+    run, log = runs / f"{name}-{seed}.safetensors", partial(print, flush=True)
+    return train_dancer(recipe_of(name, budget, seed), run, material(features, budget), log)
 
 
 def about(name: str, budget: Budget) -> dict:
@@ -181,6 +181,6 @@ def sweep(budget: Budget, runs: Path) -> Sweep:
         return danced(stage(name if name in MUSIC_FEATURES else "", budget), dancer).rows
 
     return Sweep(
-        "dance-budget", VARIANTS, lambda name, seed: trained(name, budget, runs), measure, DANCED,
-        DIFFERENCES, lambda name: about(name, budget),
+        "dance-budget", VARIANTS, lambda name, seed: trained(name, seed, budget, runs), measure,
+        DANCED, DIFFERENCES, lambda name: about(name, budget),
     )  # fmt: skip

@@ -147,11 +147,12 @@ KINDS = {
 }
 
 
-def map_recipe(name: str, budget: MapBudget) -> Recipe:
+def map_recipe(name: str, budget: MapBudget, seed: int = 0) -> Recipe:
     """The recipe of a walker with one constant rate of dropout."""
     rate = VARIANTS[name].recipe
     return replace(
-        MEND_PLAIN, name=f"mend-map.{name}", dropout=(rate,) if rate else (), dropout_start=0.0,
+        MEND_PLAIN, name=f"mend-map.{name}", seed=seed,
+        dropout=(rate,) if rate else (), dropout_start=0.0,
         steps=budget.steps, clips=budget.clips, save_every=budget.save_every,
     )  # fmt: skip
 
@@ -166,7 +167,9 @@ def sweep(budget: MapBudget, runs: Path, trials: Trials) -> Sweep:
 
     def trained(name: str, seed: int) -> Walker:
         runs.mkdir(parents=True, exist_ok=True)
-        return train(map_recipe(name, budget), runs / f"{name}.safetensors", _clips(budget))
+        return train(
+            map_recipe(name, budget, seed), runs / f"{name}-{seed}.safetensors", _clips(budget)
+        )
 
     def measure(name: str, walker: Walker, seed: int) -> Rows:
         found = {share: measured([walker], trials, share) for share in SHARES}

@@ -118,8 +118,16 @@ FULL, QUICK = Size(), Size(clips=4, seconds=6.5, training=12, budget=0.002)
 
 
 def recipe_of(name: str, seed: int, size: Size) -> Recipe:
-    """The recipe of a rung for one training seed, its steps and its rate filled in."""
+    """The recipe of a rung for one training seed, its steps and its rate filled in.
+
+    Raises ValueError for a rung without a pace.
+    """
     rung, plan = VARIANTS[name].recipe, json.loads(PLAN.read_text(encoding="utf-8"))
+    if name not in plan["pace"]:
+        raise ValueError(
+            f"{PLAN} has no pace of {name}: add the CPU-milliseconds of a training step on one "
+            "thread, timed in turn with those of another rung, and scaled by that rung's pace"
+        )
     seconds = CPU_SECONDS * rung.budget * size.budget
     steps = max(20, round(1000 * seconds / plan["pace"][name]))
     rate = plan["rates"][rung.rate] if rung.rate else rung.recipe.lr
