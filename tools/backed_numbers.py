@@ -5,10 +5,10 @@
 An answer may name decimals, and numbers with a unit, only if the cells before it print them: in
 their output, in a caption, in a figure's texts, or in the code as a setting. It does not know which
 printed number is meant, so it finds a number that nothing printed, not every wrong one. What
-follows from such numbers, or stands in the table of results, says so in a comment that is not
-shown:
+follows from such numbers, or is the value of a record of the results, says so in a comment that is
+not shown:
 
-    <!-- 15 % = 100 * (1 - 0.85) -->      <!-- in RESULTS.md: 0.5 1.5 -->
+    <!-- 15 % = 100 * (1 - 0.85) -->      <!-- records: dancer.repeat dancer.repeat_data -->
 
 Lists those that are not, and exits with 1 if there are
 any. It needs outputs: `make notebooks` leaves executed copies in build/executed.
@@ -20,6 +20,7 @@ import html
 import json
 import re
 import sys
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -36,9 +37,9 @@ ASIDE = re.compile(
     r"`[^`]*`|\$\$.*?\$\$|\$[^$]*\$|\]\([^)]*\)|<!--.*?-->|\b[Nn]otebooks? \d\d", re.DOTALL
 )
 DERIVED = re.compile(rf"<!-- ({NUMBER})(?: ?(?:{UNITS}))? = ([^>]+?) -->")
-LISTED = re.compile(r"<!-- in RESULTS\.md: ([\d. ]+) -->")
+LISTED = re.compile(r"<!-- records: ([\w. -]+?) -->")
 TRIVIAL = {1.0, 2.0, 10.0, 100.0, 360.0, 1000.0}  # need no backing in a formula
-RESULTS = Path(__file__).parent.parent / "docs" / "RESULTS.md"
+RESULTS = Path(__file__).parent.parent / "docs" / "results"
 # What a number with this unit may have been printed as, times: a share, metres, seconds.
 SCALES = {
     "%": (1.0, 100.0),
@@ -92,10 +93,16 @@ def derived(answer: str, there: set[float]) -> set[float]:
     return found
 
 
-def in_results(answer: str, results: str) -> set[float]:
-    """The numbers that comments of an answer take from the table of results, if they are there."""
-    listed = [Claim(one, "", False) for text in LISTED.findall(answer) for one in text.split()]
-    return {claim.value for claim in listed if claim.backed(numbers(results), set())}
+def of_records(answer: str, records: Mapping[str, float]) -> set[float]:
+    """The values of the records that comments of an answer name.
+
+    Raises ValueError for a record that does not exist.
+    """
+    named = [name for names in LISTED.findall(answer) for name in names.split()]
+    missing = [name for name in named if name not in records]
+    if missing:
+        raise ValueError(f"no record is called {', '.join(missing)}: see docs/RESULTS_ALL.md")
+    return {records[name] for name in named}
 
 
 def claims(answer: str) -> list[Claim]:
@@ -139,10 +146,10 @@ def printed(output: dict) -> str:
     return html.unescape(" ".join([data.get("text/plain", ""), *told, drawn]))
 
 
-def unbacked(notebook: dict, results: str = "") -> list[str]:
+def unbacked(notebook: dict, records: Mapping[str, float] | None = None) -> list[str]:
     """The claims of a notebook that nothing before them backs, each with the place.
 
-    `results`: the text of docs/RESULTS.md.
+    `records`: the values of the results, by name.
     """
     seen: set[float] = set()
     written: set[float] = set()
@@ -156,22 +163,28 @@ def unbacked(notebook: dict, results: str = "") -> list[str]:
             for output in cell.get("outputs", []):
                 seen |= numbers(printed(output))
         for answer in ANSWER.findall(source) if cell["cell_type"] == "markdown" else ():
-            more = derived(answer, seen | written | typed) | in_results(answer, results)
+            more = derived(answer, seen | written | typed)
+            known = seen | of_records(answer, records or {})
             found += [
                 f"cell {index}: {claim.text} {claim.unit}".rstrip()
                 for claim in claims(answer)
-                if not claim.backed(seen, written | more)
+                if not claim.backed(known, written | more)
             ]
     return found
 
 
 def unbacked_in(executed: Path) -> list[str]:
     """The figures that are not backed in all executed notebooks of a folder, each with its file."""
-    results = RESULTS.read_text("utf-8")
+    records = {
+        one["name"]: one["value"]
+        for path in RESULTS.glob("*.json")
+        for one in json.loads(path.read_text("utf-8"))
+        if one["value"] is not None
+    }
     found = []
     for path in sorted(executed.glob("*.ipynb")):
         notebook = json.loads(path.read_text("utf-8"))
-        found += [f"{path.name}, {one}" for one in unbacked(notebook, results)]
+        found += [f"{path.name}, {one}" for one in unbacked(notebook, records)]
     return found
 
 

@@ -2,7 +2,7 @@
 
 The paper walks back as if nothing were known, and fills the holes from the result. But known joints
 constrain the missing ones beside them, and known frames those before and after.
-Gain: docs/RESULTS.md, *Both papers' repairs* (`mend-both.*`) and *Reconstruction* (`mend.*`).
+Gain: docs/RESULTS_ALL.md (`mend-both.*`, `mend.*`).
 Source: ours; the mask is MoFusion 4.4's, the walk MoDiff III-E's.  Notebook: 15
 """
 

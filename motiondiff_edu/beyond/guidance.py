@@ -6,7 +6,7 @@ They take a denoiser and return one, for `inbetweening.inpaint_steps`.
 A trained network's guess x0_hat can differ from the given entries, and then the motion jumps where
 they meet. Guidance moves the guess by the network's own gradient; blending moves it through the
 given entries. Both change x0_hat, and return the eps_hat that belongs to it.
-Gain: docs/RESULTS.md, *In-betweens* (`inbetween-departures.no-guidance.*`, `.no-blending.*`).
+Gain: docs/RESULTS_ALL.md (`inbetween-departures.no-guidance.*`, `.no-blending.*`).
 Source: guidance after Ho and others (2022) and Song and others (2023); blending is ours; motion
 graphs join clips in the same way.  Notebook: 15
 """

@@ -12,8 +12,8 @@ weights convert units (`recipes.inbetweener`).
     loss = weighted(total(in_metres, bones(2, std)), near_weights(change))
 
 Gain: docs/RESULTS.md, *From the paper's walker to ours* (`ladder.ours-plain-loss.*`): bone errors
-are smaller, feet slide more and the control is kept less well. *What each choice of a dancer is
-worth* (`dance-budget.poses.*`, `.no-feet.*`, `.eps-weighted.*`).
+are smaller, feet slide more and the control is kept less well. docs/RESULTS_ALL.md
+(`dance-budget.poses.*`, `.no-feet.*`, `.eps-weighted.*`).
 Ours; neither paper has them.
 Notebook: 07, 12
 """

@@ -11,7 +11,7 @@ Columns of a frame:
     16:18  the sides of legs and arms: 1 left, -1 right, 0 neither or both
     18:20  the times still to come of what legs and arms do, or will do next, this time included
     20:22  how far this time is: from 0 up to 1 in its middle, and down again
-Gain: docs/RESULTS.md, *What each choice is worth* (`words-budget.no-timeline.*`).
+Gain: docs/RESULTS_ALL.md (`words-budget.no-timeline.*`).
 Ours; MoFusion generates the motion alone.
 Notebook: 16, 17
 """

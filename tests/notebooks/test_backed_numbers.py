@@ -93,9 +93,13 @@ def test_a_comment_computes_and_does_nothing_else():
         unbacked({"cells": [code("f(0.5)"), told]})
 
 
-def test_what_stands_in_the_results_is_backed():
-    told = {"cells": [answer("with a goal of 0.5 to 1.5<!-- in RESULTS.md: 0.5 1.5 -->")]}
-    assert unbacked(told, "| 0.5 to 1.5 |") == [] and unbacked(told, "0.5") == ["cell 0: 1.5"]
+def test_a_figure_is_backed_by_the_record_that_it_names_and_by_no_other():
+    told = {"cells": [answer("0.21 beside 0.55<!-- records: dancer.repeat a-b.c -->")]}
+    records = {"dancer.repeat": 0.208, "a-b.c": 0.55}
+    assert unbacked(told, records) == []
+    assert unbacked(told, records | {"a-b.c": 0.4, "other": 0.55}) == ["cell 0: 0.55"]
+    with pytest.raises(ValueError, match="no record is called a-b.c"):
+        unbacked(told, {"dancer.repeat": 0.208})
 
 
 def test_text_outside_of_answers_is_not_read():

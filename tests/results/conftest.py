@@ -1,10 +1,10 @@
-"""Intervals of few draws: what is tested here is not their width (`test_results` tests that)."""
+"""Intervals of few draws: what is tested here is not their width (`test_sweep` tests that)."""
 
 from functools import partial
 
 import pytest
 
-from tools.results.intervals import interval
+from tools.results.intervals import interval, interval_over_seeds
 from tools.results.walks import scores
 
 
@@ -12,4 +12,5 @@ from tools.results.walks import scores
 def few_draws():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(scores, "interval", partial(interval, draws=60))
+        patch.setattr(scores, "interval_over_seeds", partial(interval_over_seeds, draws=60))
         yield

@@ -3,6 +3,7 @@
 What differs is what the table says, a row goes on, differences are of the same songs.
 """
 
+import json
 from dataclasses import asdict, replace
 from functools import partial
 
@@ -15,13 +16,15 @@ from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
 from motiondiff_edu.performers.hearing_mofusion import HearingConfig
 from motiondiff_edu.recipes.ear import EAR
 from tools.results import __main__ as command
-from tools.results.dances import budget, tables, timing
-from tools.results.dances.budget import FULL, QUICK, VARIANTS, budget_records, recipe_of
-from tools.results.dances.parts import Danced, DanceSize
+from tools.results.dances import budget, timing
+from tools.results.dances.budget import FULL, QUICK, VARIANTS, recipe_of
+from tools.results.dances.parts import DanceSize
 from tools.results.dances.scores import rows_of
 from tools.results.intervals import interval
+from tools.results.page.records import DANCES
+from tools.results.sweep import run
 from tools.results.walks import scores
-from tools.results.walks.parts import Walks
+from tools.results.walks.parts import LINES, Walks
 
 TINY = MoFusionConfig(widths=(16, 24), music_layers=1, S=60, target="x0", skip=False)
 SMALL = replace(QUICK, measured=DanceSize(songs=3, seeds=1, pieces=2, each=2))
@@ -32,7 +35,8 @@ def tiny(monkeypatch):
     """The same variants with networks that train in no time, and intervals of few draws."""
     monkeypatch.setattr(scores, "interval", partial(interval, draws=30))
     transformer = TransformerConfig(width=16, heads=2, layers=1, music_layers=1, S=60)
-    for name, (words, base, config, settings) in list(VARIANTS.items()):
+    for name, variant in list(VARIANTS.items()):
+        config, settings = variant.recipe
         changes = {"target": config.target, "C": config.C}
         if isinstance(config, HearingConfig):
             small = HearingConfig(
@@ -44,7 +48,18 @@ def tiny(monkeypatch):
             small = replace(
                 TINY, skip=config.skip, music_layers=min(config.music_layers, 1), **changes
             )
-        monkeypatch.setitem(VARIANTS, name, (words, base, small, settings))
+        monkeypatch.setitem(VARIANTS, name, replace(variant, recipe=(small, settings)))
+
+
+def base_of(name: str) -> str:
+    """The variant that it is described as differing from: its first rival."""
+    return next(iter(VARIANTS[name].rivals))
+
+
+def records_of(name: str, folder) -> dict[str, dict]:
+    """The records of one variant, at the small budget, without the beginning of their names."""
+    made = run(budget.sweep(SMALL, folder / "runs"), name, folder / "rows", "c")
+    return {one["name"].removeprefix(f"dance-budget.{name}."): one for one in made}
 
 
 def test_each_variant_differs_from_its_base_in_what_its_words_say():
@@ -65,7 +80,7 @@ def test_each_variant_differs_from_its_base_in_what_its_words_say():
         "regression": {"config.deterministic"},
     }
     for name, wanted in differing.items():
-        own, base = (flat(asdict(recipe_of(n, FULL))) for n in (name, VARIANTS[name][1]))
+        own, base = (flat(asdict(recipe_of(n, FULL))) for n in (name, base_of(name)))
         assert own.keys() == base.keys()
         assert {k.split(".")[0] if k.startswith("kin") else k for k in own if own[k] != base[k]} - {
             "name"
@@ -78,8 +93,7 @@ def test_each_variant_differs_from_its_base_in_what_its_words_say():
         recipe_of("x0", FULL)
     )
     assert (ear.ear.songs, ear.ear.seconds) == (ear.songs, ear.seconds)
-    rivals = {rival for found in budget.RIVALS.values() for rival in found}
-    assert rivals | {base for _, base, *_ in VARIANTS.values()} - {""} <= set(VARIANTS)
+    assert {rival for one in VARIANTS.values() for rival in one.rivals} <= set(VARIANTS)
 
 
 def flat(tree: dict, above: str = "") -> dict:
@@ -95,65 +109,36 @@ def flat(tree: dict, above: str = "") -> dict:
 
 def test_the_transformer_is_of_the_size_of_the_unet():
     unet, plain = (
-        sum(p.numel() for p in kind(VARIANTS[name][2]).parameters())
+        sum(p.numel() for p in kind(VARIANTS[name].recipe[0]).parameters())
         for kind, name in ((MoFusion, "x0"), (DanceTransformer, "transformer"))
     )
     assert plain == pytest.approx(unet, rel=0.02)
 
 
-def test_a_row_is_trained_measured_and_set_beside_its_base(tiny, tmp_path, capsys):
-    records = budget_records("alpha_bar", SMALL, tmp_path, "c")
-    assert "x0 was not measured" in capsys.readouterr().out
-    assert not [one["name"] for one in records if "minus" in one["name"]]
-    base = {one["name"]: one for one in budget_records("x0", SMALL, tmp_path, "c")}
-    again = {one["name"]: one for one in budget_records("alpha_bar", SMALL, tmp_path, "c")}
-    assert "continuing at step 3" in capsys.readouterr().out  # nothing was trained again
-    for one in records:
-        assert again[one["name"]]["value"] == one["value"]
-    share = [
-        found[f"dance-budget.{n}.bas_share"]["value"]
-        for n, found in (("alpha_bar", again), ("x0", base))
-    ]
-    assert again["dance-budget.alpha_bar.bas_share_minus_x0"]["value"] == pytest.approx(
-        share[0] - share[1], abs=1e-3
-    )
-    bones = [
-        found[f"dance-budget.{n}.bone_rmse_cm"]["value"]
-        for n, found in (("alpha_bar", again), ("x0", base))
-    ]
-    gain = again["dance-budget.alpha_bar.bone_gain_over_x0"]
-    assert gain["value"] == pytest.approx(1 - bones[0] / bones[1], abs=1e-3)
-    seeds = gain["seeds"]
-    assert seeds["trained_steps"] == 3 and seeds["songs"] == 3 and seeds["sampling"] == [0]
-    assert seeds["weights"] != base["dance-budget.x0.bas"]["seeds"]["weights"]
-
-
-def test_rows_of_another_budget_or_sampler_are_not_set_beside_it(tiny, tmp_path, monkeypatch):
-    rows = {"bas": np.full(4, 0.5), "bas_shuffled": np.full(4, 0.2)}
-    squares = np.full(4, 2.0)
-    data = {"bas": np.full(4, 0.8), "bas_shuffled": np.full(4, 0.2)}
-    made = np.empty((1, 4, 2, 21, 3))
-    worse = Danced([], made, {**rows, "bas": np.full(4, 0.35)}, data, 4 * squares)
-    budget.keep("constant", worse, tmp_path, SMALL)
-    found = Danced([], made, rows, data, squares)
-    measures = {
-        measure.name: measure.value for measure in budget.gains("alpha_bar", found, tmp_path, SMALL)
-    }
-    assert measures["bas_share_minus_constant"] == pytest.approx(0.3 / 0.6 - 0.15 / 0.6)
-    assert measures["bone_gain_over_constant"] == pytest.approx(0.5) and len(measures) == 2
-    for other in (
-        replace(SMALL, steps=4),
-        replace(SMALL, measured=DanceSize(songs=3, seeds=1, pieces=2, each=3)),
-    ):
-        assert budget.gains("alpha_bar", found, tmp_path, other) == []
-    monkeypatch.setattr(budget, "ETA", 0.25)
-    assert budget.gains("alpha_bar", found, tmp_path, SMALL) == []
+def test_a_variant_is_trained_measured_and_set_beside_its_rivals(tiny, tmp_path, capsys):
+    alone = records_of("alpha_bar", tmp_path)
+    assert "there are no rows of x0 to compare with" in capsys.readouterr().out
+    assert not [name for name in alone if "minus" in name]
+    base = records_of("x0", tmp_path)
+    capsys.readouterr()
+    again = records_of("alpha_bar", tmp_path)
+    assert "step" not in capsys.readouterr().out, "it was trained again"
+    assert {name: again[name] for name in alone} == alone
+    share = [found["bas_share"]["value"] for found in (again, base)]
+    gained = again["bas_share_minus_x0"]
+    assert gained["value"] == pytest.approx(share[0] - share[1], abs=2e-3)
+    bones = [found["bone_rmse_cm"]["value"] for found in (again, base)]
+    saved = again["bone_gain_over_x0"]["value"]
+    assert saved == pytest.approx(1 - bones[0] / bones[1], abs=1e-3)
+    seeds = gained["seeds"]
+    assert seeds["trained_steps"] == 3 and seeds["songs"] == 3 and seeds["samples"] == 1
+    assert seeds["dances"] == DANCES and seeds["trainings"] == 1
+    assert again["fid"]["low"] == again["fid"]["value"], "computed once, over all songs"
 
 
 @pytest.mark.parametrize("name", ["eps-weighted", "mfcc", "regression", "ear"])
 def test_what_is_not_the_usual_network_is_trained_and_measured(tiny, tmp_path, name):
-    found = {one["name"].removeprefix(f"dance-budget.{name}."): one["value"]
-             for one in budget_records(name, SMALL, tmp_path, "c")}  # fmt: skip
+    found = {kind: one["value"] for kind, one in records_of(name, tmp_path).items()}
     assert found["fid"] > 0 and found["bone_rmse_cm"] > 0
     # a batch's rows may differ by rounding
     assert (found["multimodality"] < 1e-5) == (name == "regression")
@@ -185,18 +170,8 @@ def test_times_are_of_every_network_and_the_base_is_one(tiny):
         assert mine[0]["unit"] == "CPU ms" and mine[1]["unit"] == "ratio"
     networks = {"x0": MoFusion, "transformer": DanceTransformer, "regression": DanceTransformer}
     for name, kind in networks.items():
-        size = sum(p.numel() for p in kind(VARIANTS[name][2]).parameters())
+        size = sum(p.numel() for p in kind(VARIANTS[name].recipe[0]).parameters())
         assert found[f"dance-time.{name}.parameters"]["value"] == size
-    page = tables.choices(found)
-    assert (
-        "{" not in page and "a training step (batch 3)" in page and "8 dances of 100 frames" in page
-    )
-    (line,) = [
-        line
-        for line in page.splitlines()
-        if line.startswith("| `transformer`: ") and "not measured" not in line
-    ]
-    assert line.count(" | ") == 7
     # fifty passes against one
     assert (
         found["dance-time.transformer.dance_ms"]["value"]
@@ -209,27 +184,27 @@ def test_what_trains_is_run_when_asked_for_only():
     weights = {"dancer"}
     lines = {"walker": Walks("walker", "walker")}
     plain = command.parts_of([], False, lines, weights)  # there are no weights of that walker
-    assert plain == [
-        "dancer",
-        "unheard",
-        "footsteps",
-        "dance-data",
-        "attention",
-        "dance-time",
-        "known-answer",
-        "course",
-        "guided",
-        "ear",
-    ]
+    assert set(plain) == {
+        "dancer", "unheard", "footsteps", "dance-data", "attention", "dance-time", "known-answer",
+        "course", "guided", "ear",
+    }  # fmt: skip
     full = command.parts_of([], True, {}, weights)
-    assert full[: len(plain)] == plain and {"dance-budget.v", "ladder.ours"} <= set(full)
-    assert command.parts_of(["dance-budget"], False, {}, weights) == [
-        f"dance-budget.{name}" for name in VARIANTS
-    ]
-    assert command.parts_of(["dance-budget.v", "attention"], False, {}, weights) == [
-        "dance-budget.v",
-        "attention",
-    ]
+    assert set(plain) | {"dance-budget.v", "ladder.ours", "mend-map.05"} <= set(full)
+    assert not [name for name in full if name.startswith(("inbetween", "recordings", "real"))]
+    both = command.parts_of([], False, {}, {"inbetweens", "unconditional"})
+    assert {"inbetween", "inbetween-departures.ours"} <= set(both), "it trains nothing"
+    rows = [f"dance-budget.{name}" for name in VARIANTS]
+    assert command.parts_of(["dance-budget"], False, {}, weights) == rows
+    some = ["dance-budget.v", "attention"]
+    assert command.parts_of(some, False, {}, weights) == some
     assert "attention" not in command.parts_of([], False, {}, set())
     with pytest.raises(SystemExit, match="dance-budget.w"):
         command.parts_of(["dance-budget.w"], False, {}, weights)
+
+
+def test_commands_of_records_name_parts_that_there_are(root):
+    """What measured a record can measure it again."""
+    for path in (root / "docs" / "results").glob("*.json"):
+        for one in json.loads(path.read_text(encoding="utf-8")):
+            assert one["command"] == f"python -m tools.results --only {path.stem}", one["name"]
+            assert command.parts_of([path.stem], False, LINES, set()) == [path.stem]

@@ -7,7 +7,7 @@ import pytest
 import torch
 
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS
-from tools.results.dances import guided, parts, songs
+from tools.results.dances import parts, songs
 from tools.results.dances.parts import DanceSize, Stage
 
 SIZE = DanceSize(songs=3, seeds=1, pieces=2, each=2, taught=15)
@@ -53,8 +53,7 @@ def stage(monkeypatch):
         monkeypatch.setattr(parts, name, kept(getattr(parts, name)))
     for module in (parts, songs):
         monkeypatch.setattr(module, "recorded_song", lambda song, seed: song)
-    for module in (parts, guided):
-        monkeypatch.setattr(module, "weights_digest", lambda path: "w", raising=False)
+    monkeypatch.setattr(parts, "weights_digest", lambda path: "w")
     stage = Stage(SIZE)
     stage.weights = {"dancer": Path("dancer")}
     stage.dancer = lambda name: perfect
@@ -100,6 +99,6 @@ def test_a_perfect_dancer_to_music_unheard(stage):
 
 
 def test_a_perfect_dancer_at_every_weight(stage):
-    found = values(guided.guided_records(stage, "c"))
-    for weight in guided.WEIGHTS:
+    found = values(parts.guided_records(stage, "c"))
+    for weight in parts.WEIGHTS:
         assert found[f"dancer.guided.{weight}.bas_share"] == pytest.approx(1, abs=1e-3)

@@ -10,15 +10,9 @@ from small_dancers import dancer_to_mel
 
 from data_synth.music.tempi import HELD_OUT_TEMPI, held_out
 from data_synth.music.varied import varied_songs
-from tools.results.dances import parts, tables
-from tools.results.dances.floor import (
-    data_floor_measures,
-    floor_measures,
-    floor_rows,
-    over_genres,
-)
-from tools.results.dances.guided import WEIGHTS, Guided, guided_measures
-from tools.results.dances.parts import DanceSize, Stage
+from tools.results.dances import parts
+from tools.results.dances.floor import data_floor_measures, floor_measures, floor_rows, over_genres
+from tools.results.dances.parts import WEIGHTS, DanceSize, Guided, Stage, guided_records
 from tools.results.dances.scores import share, worst_share
 from tools.results.dances.songs import FEWEST, JUDGED, UNSEEN, judged_songs, songs_like_real
 
@@ -112,37 +106,19 @@ class Heard:
         return made * guidance
 
 
-def test_each_weight_of_guidance_is_asked_for_and_measured():
+def test_each_weight_of_guidance_is_asked_for_and_measured(monkeypatch):
     stage = Stage(DanceSize(songs=2, seeds=1, pieces=1, each=2))
     heard = Heard()
-    found = named(guided_measures(stage, heard))
+    stage.dancer = lambda name: heard
+    monkeypatch.setattr(parts, "weights_digest", lambda path: "w")
+    stage.weights = {"dancer": None}
+    found = {one["name"]: one["value"] for one in guided_records(stage, "c")}
     assert set(heard.asked) == set(WEIGHTS) and {1, 2} < set(WEIGHTS)
-    assert found["2.speed_mps"] == pytest.approx(2 * found["1.speed_mps"], rel=1e-3)
+    speeds = [found[f"dancer.guided.{weight}.speed_mps"] for weight in (1, 2)]
+    assert speeds[1] == pytest.approx(2 * speeds[0], rel=1e-3)
     for kind in ("bas_share", "multimodality_over_data", "fid", "speed_over_data"):
-        assert all(f"{weight}.{kind}" in found for weight in WEIGHTS)
+        assert all(f"dancer.guided.{weight}.{kind}" in found for weight in WEIGHTS)
     noise = torch.Generator().manual_seed(0)
     mel = stage.songs.mel[:1]
     same = Guided(heard, 3).dance_mel(mel, 20, generator=noise)
     assert same.shape == (1, 20, 21, 3) and heard.asked[-1] == 3
-
-
-def test_the_page_has_a_row_without_guidance_and_a_table_of_weights():
-    keys = dict(low=0.1, high=0.3, seeds={}, unit="", paper=None, command="c")
-    kinds = ("bas", "bas_share", "fid", "speed_over_data")
-    records = {
-        name: dict(name=name, value=0.1 * weight, **keys)
-        for weight in (1, 4)
-        for name in (f"dancer.guided.{weight}.{kind}" for kind in kinds)
-    }
-    page = tables.table_1(records)
-    assert "| **the same without guidance** | - | 0.1 [0.1, 0.3] |" in page
-    assert "| 4 | 0.4 [0.1, 0.3] | 0.4 [0.1, 0.3] |" in page and "| 2 |" not in page
-    assert "not measured yet" in tables.table_1({}) and tables.guidance({}) == ""
-
-
-def test_the_page_has_the_floor_of_each_genre():
-    keys = dict(low=0.1, high=0.3, seeds={}, unit="", paper=None, command="c")
-    names = ("dance_data.standing_feet", "dance_data.waltz.standing_feet")
-    page = tables.floor({name: dict(name=name, value=0.2, **keys) for name in names})
-    assert "| mean over genres | 0.2 [0.1, 0.3] | - | - |" in page
-    assert "| waltz | 0.2 [0.1, 0.3] | - | - |" in page and tables.floor({}) == ""

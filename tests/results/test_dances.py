@@ -7,17 +7,21 @@ import numpy as np
 import pytest
 
 from tools.results.dances.scores import (
-    beat_measures,
+    BEATS,
+    BONES,
+    VARIETY,
+    beat_rows,
     bone_gain,
-    bone_measure,
+    bone_rows,
     features_of,
     longer,
     repeat_measure,
     rows_of,
     share,
-    variety_measures,
+    variety_rows,
 )
 from tools.results.dances.songs import FPS, judged_songs
+from tools.results.walks.scores import measures
 
 
 @pytest.fixture(scope="module")
@@ -27,6 +31,10 @@ def songs():
 
 def named(measures) -> dict[str, float]:
     return {measure.name: measure.value for measure in measures}
+
+
+def beats_of(own, data) -> dict[str, float]:
+    return named(measures(BEATS, beat_rows(own, data)))
 
 
 def test_songs_and_dances_are_of_the_same_seconds(songs):
@@ -40,16 +48,14 @@ def test_songs_and_dances_are_of_the_same_seconds(songs):
 def test_the_datas_own_dances_have_the_datas_measures(songs):
     beats = songs.beats(100)
     data = rows_of(songs.truth[:, 0][None], beats)
-    found = named(beat_measures(data, data))
+    found = beats_of(data, data)
     assert found["skating_mps"] == found["skating_data_mps"] < 0.05
     slid = songs.truth[:, 0][None] + 0.01 * np.arange(songs.truth.shape[2])[:, None, None] * [
         1.0,
         0.0,
         0.0,
     ]
-    assert named(beat_measures(rows_of(slid, beats), data))["skating_mps"] == pytest.approx(
-        0.2, abs=0.05
-    )
+    assert beats_of(rows_of(slid, beats), data)["skating_mps"] == pytest.approx(0.2, abs=0.05)
     assert (
         found["bas_share"]
         == found["speed_over_data"]
@@ -57,10 +63,10 @@ def test_the_datas_own_dances_have_the_datas_measures(songs):
         == pytest.approx(1)
     )
     assert found["bas"] > found["bas_shuffled"] + 0.15
-    other = named(beat_measures(rows_of(songs.truth[:, 1][None], beats), data))
+    other = beats_of(rows_of(songs.truth[:, 1][None], beats), data)
     assert 0.5 < other["bas_share"] < 1.6  # another right dance to the same songs
     late = np.roll(songs.truth[:, 0], 6, axis=1)  # 0.3 s: no beat any more
-    assert named(beat_measures(rows_of(late[None], beats), data))["bas_share"] < 0.4
+    assert beats_of(rows_of(late[None], beats), data)["bas_share"] < 0.4
 
 
 def test_share_by_hand():
@@ -72,24 +78,25 @@ def test_share_by_hand():
 
 
 def test_bones(songs):
-    still, squares = bone_measure(songs.truth[:, 0][None])
-    assert still.value == pytest.approx(0, abs=1e-9)
+    still = bone_rows(songs.truth[:, 0][None])
+    assert named(measures(BONES, still))["bone_rmse_cm"] == pytest.approx(0, abs=1e-9)
     longer_legs = songs.truth[:, 0].copy()
     longer_legs[..., [3, 4], :] += [0.0, -0.02, 0.0]
-    wrong, more = bone_measure(longer_legs[None])
-    assert wrong.value > 0.2
-    assert bone_gain(more / 4, more).value == pytest.approx(
-        0.5
-    )  # half the error, a quarter of its square
+    more = bone_rows(longer_legs[None])
+    assert named(measures(BONES, more))["bone_rmse_cm"] > 0.2
+    # half the error, a quarter of its square
+    assert bone_gain(more["bones"] / 4, more["bones"]) == pytest.approx(0.5)
 
 
 def test_variety(songs):
     features = features_of(songs.truth)
     pooled = features_of(songs.truth[:, :1])[:, 0]
-    found = named(variety_measures(features, features, pooled))
+    found = named(measures(VARIETY, variety_rows(features, features, pooled)))
     assert found["multimodality_over_data"] == pytest.approx(1) and found["multimodality"] > 0
+    assert found["fid"] == found["fid_data"] > 0 and found["diversity"] == found["diversity_data"]
     same = np.repeat(features[:, :1], 3, axis=1)
-    assert named(variety_measures(same, features, pooled))["multimodality"] == 0
+    alike = named(measures(VARIETY, variety_rows(same, features, pooled)))
+    assert alike["multimodality"] == 0 and alike["multimodality_data"] == found["multimodality"]
 
 
 def test_a_loop_repeats_and_a_dance_less(songs):

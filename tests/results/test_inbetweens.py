@@ -23,6 +23,7 @@ from tools.results.inbetweens.inbetween import (
     middle,
     trials,
 )
+from tools.results.sweep import run
 
 GAP = 10
 
@@ -164,7 +165,7 @@ def test_every_way_is_asked_for_what_it_is_for(monkeypatch, truth):
     assert not any(one.known.any() for one in free)
 
 
-def test_departures_are_measured_on_the_same_noise_one_left_out_at_a_time(monkeypatch):
+def test_departures_are_measured_on_the_same_noise_one_left_out_at_a_time(monkeypatch, tmp_path):
     """The networks are replaced by one that stretches the gap, which the clean-up mends, and errs.
 
     The one that is not shown what is given errs more, and most without guidance.
@@ -193,29 +194,30 @@ def test_departures_are_measured_on_the_same_noise_one_left_out_at_a_time(monkey
 
     size = InbetweenSize(motions=2, samples=2)
     truth, cleaned = inbetween.trials(2), []
-    left = [one for _ in departures.ROWS for one in truth]
+    left = [one for _ in departures.VARIANTS for one in truth]
     networks = {name: (Filler(name), "digest") for name in ("inbetweener", "unconditional")}
     monkeypatch.setattr(departures, "inpaint", made)
     monkeypatch.setattr(departures, "clean_samples", clean_samples)
-    rows = departures.ROWS | {
-        "ours": replace(departures.ROWS["ours"], fill=ours),
-        "no-clean-up": replace(departures.ROWS["no-clean-up"], fill=made),
-        "paper": replace(departures.ROWS["paper"], fill=made),
-    }
-    monkeypatch.setattr(departures, "ROWS", rows)
+    variants = dict(departures.VARIANTS)
+    for name, fill in (("ours", ours), ("no-clean-up", made), ("paper", made)):
+        network, _ = variants[name].recipe
+        variants[name] = replace(variants[name], recipe=(network, fill))
+    monkeypatch.setattr(departures, "VARIANTS", variants)
+    sweep = departures.sweep(networks, size)
     found = {
         one["name"].removeprefix("inbetween-departures."): one["value"]
-        for one in departures.departure_records(networks, size, "a command")
+        for name in departures.VARIANTS
+        for one in run(sweep, name, tmp_path, "a command")
     }
-    each = [asked[2 * k : 2 * k + 2] for k in range(len(rows))]
-    assert len(asked) == 2 * len(rows)
-    for row, (one, other) in zip(rows.values(), each, strict=True):
-        assert one[:2] == other[:2] and one[0] == row.network
+    each = [asked[2 * k : 2 * k + 2] for k in range(len(variants))]
+    assert len(asked) == 2 * len(variants)
+    for row, (one, other) in zip(variants.values(), each, strict=True):
+        assert one[:2] == other[:2] and one[0] == row.recipe[0]
         assert [one[2], other[2]] == [noise for _, _, noise in asked[:2]]
     steers = [one[1] for one, _ in each]
     assert steers[:2] == [None] * 2 and steers[-1] is None
     assert steers[2:5] == [departures.guide_and_blend, departures.blend, departures.guide]
-    assert len(cleaned) == 2 * (len(rows) - 2), "all but two rows are cleaned up"
+    assert len(cleaned) == 2 * (len(variants) - 2), "all but two rows are cleaned up"
     assert found["ours.error_one_cm"] == pytest.approx(1.0)
     assert found["not-shown.error_one_cm"] == pytest.approx(2.0)
     assert found["not-shown.error_one_minus_base_cm"] == pytest.approx(1.0)
@@ -231,13 +233,11 @@ def test_the_rows_of_departures_run_and_differ(truth):
     """On small networks: no two rows fill a gap alike."""
     networks = {"inbetweener": small_inbetweener(activity=True), "unconditional": dancer_of_bands()}
     known = middle(departures.GAP)
-    made = [
-        row.fill(
-            networks[row.network], truth[0], known, samples=1, steps=3,
-            generator=torch.Generator().manual_seed(0),
-        )
-        for row in departures.ROWS.values()
-    ]  # fmt: skip
+    made = []
+    for row in departures.VARIANTS.values():
+        network, fill = row.recipe
+        draw = torch.Generator().manual_seed(0)
+        made.append(fill(networks[network], truth[0], known, samples=1, steps=3, generator=draw))
     for k, one in enumerate(made):
         assert np.array_equal(one[0][known], truth[0][known])
         assert not any(np.array_equal(one, other) for other in made[:k])

@@ -1,32 +1,34 @@
-"""The ladder: one choice a cell, measures by hand, and no cell is trained twice."""
+"""The ladder: one choice a rung, the printed recipe is the paper's, steps are the budget's."""
 
-import json
 from dataclasses import asdict
 
 import numpy as np
 import pytest
 
-from tools.results.walks import ladder, ladder_page
-
-SMALL = ladder.Size(clips=2, seconds=0.5, training=2, budget=0.001)
+from tools.results.page import pictures
+from tools.results.walks import ladder
+from tools.results.walks.scores import measures
 
 
 def differences(name: str) -> set[str]:
-    """The fields in which a cell's recipe is unlike its base's."""
-    mine, base = (vars(ladder.CELLS[one].recipe) for one in (name, ladder.CELLS[name].base))
-    return {key for key in mine if mine[key] != base[key]} - {"name"}
+    """The fields in which a rung's recipe is unlike its base's."""
+    base = ladder.VARIANTS[name].rivals["base"]
+    mine, other = (vars(ladder.VARIANTS[one].recipe.recipe) for one in (name, base))
+    return {key for key in mine if mine[key] != other[key]} - {"name"}
 
 
-@pytest.mark.parametrize("name", [n for n, cell in ladder.CELLS.items() if cell.base])
-def test_a_cell_differs_from_its_base_in_one_choice(name):
-    """Or in its budget; dropout instead of past noise is the one exchange."""
-    found, cell = differences(name), ladder.CELLS[name]
+@pytest.mark.parametrize("name", [n for n, one in ladder.VARIANTS.items() if one.rivals])
+def test_a_rung_differs_from_its_base_in_one_choice(name):
+    """Or in its budget or rate; dropout instead of past noise is the one exchange."""
+    found, rung = differences(name), ladder.VARIANTS[name].recipe
     if name == "ours-dropout":
         assert found == {"past_noise", "dropout"}
+    elif name == "ours-both-light":
+        assert found == {"noised_past_weight"}
     elif name == "printed-longer":
-        assert not found and cell.budget == 4
+        assert not found and rung.budget == 4
     elif name == "printed-rate":
-        assert not found and cell.tuned
+        assert not found and rung.rate
     else:
         assert len(found) == 1, found
 
@@ -39,85 +41,59 @@ def test_the_printed_recipe_is_the_papers():
     assert (recipe.config.target, recipe.config.skip) == ("eps", False)
     assert recipe.dropout == (0.0, 0.05, 0.1, 0.15, 0.2, 0.25) and recipe.schedule == "linear"
     assert set(asdict(recipe.loss_weights).values()) == {0}
-    assert not any(ladder.CELLS[name].tuned for name in ("printed", "printed-longer"))
+    assert not any(ladder.VARIANTS[name].recipe.rate for name in ("printed", "printed-longer"))
 
 
-def test_steps_are_the_budget_over_the_pace(tmp_path):
-    plan = ladder.Plan(tmp_path / "plan.json", pace={"ours": 40.0, "printed-longer": 50.0})
-    plan.rates = {"ours-muon": 3e-3}
-    recipe = plan.recipe("ours", 2, ladder.FULL)
-    assert (recipe.steps, recipe.seed, recipe.lr) == (15_000, 2, 3e-3)
-    longer = plan.recipe("printed-longer", 0, ladder.FULL)
-    assert (longer.steps, longer.lr) == (48_000, 5e-5)
-    plan.write()
-    assert ladder.Plan.read(plan.path) == plan
+def test_steps_are_the_budget_over_the_pace_and_rates_those_that_were_chosen():
+    ours, longer = (ladder.recipe_of(name, 2, ladder.FULL) for name in ("ours", "printed-longer"))
+    assert (ours.steps, ours.seed, ours.lr) == (round(600_000 / 55.57), 2, 0.01)
+    assert (longer.steps, longer.lr) == (round(4 * 600_000 / 60.99), 5e-5)
+    about = ladder.sweep(ladder.FULL, None).about("ours")
+    assert about["network"] == "width 64, feed-forward 128, layers 1/1/2/2"
 
 
-def test_the_records_of_pace_and_rates_have_no_name_in_common(tmp_path):
-    plan = ladder.Plan(tmp_path / "plan.json", {"ours": 40.0}, {"ours-muon": 3e-3})
-    names = [
-        [one["name"] for one in ladder.plan_records(plan, row, "c")] for row in ("pace", "rates")
-    ]
-    assert names == [["ladder.plan.ours.step_ms"], ["ladder.plan.ours-muon.rate"]]
+def test_a_rung_without_a_pace_says_what_to_add(monkeypatch):
+    monkeypatch.setitem(ladder.VARIANTS, "new", ladder.out("something new"))
+    with pytest.raises(ValueError, match="no pace of new: add the CPU-milliseconds"):
+        ladder.recipe_of("new", 0, ladder.FULL)
 
 
-def rows(values: list[float]) -> dict[str, list[float]]:
+def test_measures_of_a_rung_by_hand():
+    """Root mean squares, differences and ratios of means."""
     keys = ("bone", "bone_broken", "adherence", "adherence_data", "skating")
-    return {key: [k * value for value in values] for k, key in enumerate(keys, 1)}
+    rows = {key: np.array([k, 9.0 * k]) for k, key in enumerate(keys, 1)}
+    found = {one.name: one.value for one in measures(ladder.KINDS, rows)}
+    assert found["bone_rmse_cm"] == pytest.approx(np.sqrt(5))
+    assert found["adherence_excess_mps"] == pytest.approx(-5)
+    assert found["broken_over_whole"] == pytest.approx(np.sqrt(2))
+    assert found["skating_mps"] == pytest.approx(25)
 
 
-def test_measures_of_a_cell_by_hand(tmp_path):
-    """Two seeds, two walks: root mean squares, differences of means, and those minus the base's."""
-    for name, scale in (("ours", 1.0), ("ours-adam", 4.0)):
-        seeds = {"0": rows([scale, scale]), "1": rows([9 * scale, 9 * scale])}
-        kept = {"steps": 7, "rate": 0.1, "seeds": seeds}
-        (tmp_path / f"{name}.json").write_text(json.dumps(kept))
-    records = ladder.ladder_records(
-        "ours-adam", tmp_path / "ours-adam.json", tmp_path / "ours.json", "c"
-    )
-    found = {one["name"].removeprefix("ladder.ours-adam."): one for one in records}
-    assert found["bone_rmse_cm"]["value"] == pytest.approx(np.sqrt(20), rel=1e-4)
-    assert found["bone_rmse_cm.seed1"]["value"] == pytest.approx(6)
-    assert found["bone_rmse_cm_minus_base"]["value"] == pytest.approx(np.sqrt(5), rel=1e-4)
-    assert found["adherence_excess_mps"]["value"] == pytest.approx(-20)  # 3 x 20 - 4 x 20
-    assert found["broken_over_whole"]["value"] == pytest.approx(np.sqrt(2), rel=1e-4)
-    assert found["skating_mps"]["low"] < found["skating_mps"]["value"] == pytest.approx(100)
-    assert found["skating_mps"]["seeds"]["trainings"] == 2
+def test_a_rung_is_trained_and_its_walks_are_measured(tmp_path, monkeypatch):
+    """The walks are the data's own, and after a past with holes their bones are 1 % too long."""
+    size = ladder.Size(clips=3, seconds=0.5, training=2, budget=0.001)
+    sweep = ladder.sweep(size, tmp_path)
+    walker = sweep.train("printed", 1)
+    assert walker.card["recipe"]["seed"] == 1 and walker.card["recipe"]["lr"] == 5e-5
+
+    def continued(walker, trials, share, frames, seed):
+        return trials.truth[:, :frames] * (1.01 if share else 1.0)
+
+    monkeypatch.setattr(ladder, "continued", continued)
+    rows = sweep.measure("printed", walker, 1)
+    assert set(rows) == {key for kind in ladder.KINDS.values() for key in kind.rows}
+    assert all(row.shape == (3,) for row in rows.values())
+    assert rows["bone"].max() < 1e-6 < rows["bone_broken"].min()
+    np.testing.assert_allclose(rows["adherence"], rows["adherence_data"])
 
 
-def test_a_cell_is_trained_measured_and_not_trained_again(tmp_path, monkeypatch):
-    monkeypatch.setattr(ladder, "SEEDS", 1)
-    tiny = {n: ladder.CELLS[n] for n in ("ours", "printed")}
-    monkeypatch.setattr(ladder, "CELLS", tiny)
-    monkeypatch.setattr(ladder, "RATES", {"muon": (1e-3, 3e-3), "adam": (1e-3,)})
-    monkeypatch.setattr(ladder, "rows_of", lambda walker, trials, seed: rows_now(walker))
-
-    def rows_now(walker):
-        made = rows([float(walker.model.head[1].bias.square().sum()), 1.0])
-        return {key: np.array(values) for key, values in made.items()}
-
-    records = ladder.measure("ours", tmp_path, tmp_path / "runs", SMALL, "c")
-    plan = ladder.Plan.read(tmp_path / "plan.json")
-    assert set(plan.pace) == set(tiny) and set(plan.tried["ours-muon"]) == {"0.001", "0.003"}
-    tried = plan.tried["ours-muon"]
-    assert plan.rates["ours-muon"] == float(min(tried, key=tried.get))
-    monkeypatch.setattr(ladder, "train", lambda *args: pytest.fail("trained again"))
-    again = ladder.measure("ours", tmp_path, tmp_path / "runs", SMALL, "c")
-    assert again == records and records[0]["seeds"]["rate"] == plan.rates["ours-muon"]
-
-
-def test_the_section_shows_what_was_measured_and_names_what_was_not(tmp_path):
-    made = {}
-    for name in ("ours", "ours-adam"):
-        for kind in ladder.MEASURES:
-            for key in (kind, f"{kind}.seed0", f"{kind}_minus_base"):
-                full = f"ladder.{name}.{key}"
-                about = {"steps": 7, "rate": 0.1, "trainings": 1, "clips": 2}
-                made[full] = {"name": full, "value": 0.5, "low": 0.4, "high": 0.6, "unit": "cm",
-                              "seeds": about}  # fmt: skip
-    ladder_page.draw(made, tmp_path)
-    text = ladder_page.section(made, tmp_path)
-    assert "| ours: Adam instead of Muon | 7 | 0.1 |" in text and "`printed`" in text
-    assert "results/ladder.png" in text and (tmp_path / "ladder.png").stat().st_size > 10_000
-    assert "| Muon | 0.5 [0.4, 0.6] | - |" in text
-    assert ladder_page.section({}, tmp_path) == ""
+def test_the_pictures_are_drawn_of_what_was_measured(tmp_path):
+    some = {
+        name: {"value": 0.5, "low": 0.4, "high": 0.6}
+        for kind in pictures.RUNG_MEASURES.values()
+        for name in (f"ladder.ours.{kind}.seed0", f"ladder.printed.{kind}.seed1")
+    }
+    pictures.draw(some, tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["ladder.png"]
+    assert (tmp_path / "ladder.png").stat().st_size > 10_000
+    pictures.draw({}, tmp_path / "nowhere")

@@ -1,4 +1,4 @@
-"""Recordings: windows, continuations and in-betweens, their records and the page."""
+"""Recordings: windows, continuations and in-betweens, and their records."""
 
 import shutil
 import warnings
@@ -20,13 +20,10 @@ from tools.results import __main__ as results
 from tools.results.recordings import (
     continuations,
     inbetweens,
-    page,
     persons,
     reconstructions,
     trainings,
 )
-from tools.results.recordings.beside import MISSING, with_recordings
-from tools.results.recordings.by_source import by_source
 from tools.results.recordings.windows import (
     FULL,
     QUICK,
@@ -36,6 +33,8 @@ from tools.results.recordings.windows import (
     recorded,
     trials,
 )
+from tools.results.sweep import run
+from tools.results.walks.scores import measures
 
 RANGE = {"low": [-0.5, -0.5, -1.0], "high": [0.9, 0.5, 1.0]}
 
@@ -97,7 +96,7 @@ def test_a_window_is_continued_as_walk_continues_it(walker, folder):
     assert row["depth"] == pytest.approx(100 * max(0.0, -wanted.positions[..., 1].min()), abs=0.01)
 
 
-def test_records_are_made_and_stand_in_the_page(walker, folder, monkeypatch):
+def test_records_are_made(walker, folder, monkeypatch):
     monkeypatch.setattr(persons, "DRAWS", 2)
     monkeypatch.setattr(persons, "STEPS", 2)
     measured = walker, "0", QUICK, "python -m x"
@@ -110,11 +109,8 @@ def test_records_are_made_and_stand_in_the_page(walker, folder, monkeypatch):
     assert "real.recording.continuation_adherence_mps" not in records
     assert 0 <= records["real.style_kept"]["value"] <= 1
     assert records["real.continuation_diversity_over_synthetic"]["value"] > 0.1
-    text = page.section(records)
-    assert "2 windows of 2 recordings" in text
-    assert all(words in text for words in (page.ROWS | page.PERSONS).values())
-    empty = page.section({})
-    assert empty.startswith("## On recordings") and empty.count("not measured yet") == 5
+    kinds = {f"real.{kind}" for kind in continuations.KINDS}
+    assert kinds <= set(records) and {f"real.unblended.{k[5:]}" for k in kinds} <= set(records)
 
 
 @pytest.fixture(scope="module")
@@ -151,18 +147,24 @@ def test_a_glide_that_another_draw_mends_counts_as_drawn_again(monkeypatch):
     assert one.again.tolist() == [False, True] and np.array_equal(one.made[1], truth)
 
 
-def test_intervals_are_over_persons():
-    values = np.array([1.0, 1.0, 1.0, 5.0])
-    alone = by_source("x", "ratio", np.mean, values, np.array(["a", "a", "a", "b"]))
-    each = by_source("x", "ratio", np.mean, values, np.array(list("abcd")))
-    three = np.array(["cmu_005_01.bvh", "cmu_05_06_dance.bvh", "cmu_005_02.bvh", "b"])
-    assert by_source("x", "ratio", np.mean, values, three).high == 5, "three files of one person"
-    assert alone.value == each.value == 2 and alone.low == 1 and alone.high == 5
-    assert each.high < 5
-    assert np.isnan(by_source("x", "ratio", np.mean, values[:0], np.array([])).value)
+def test_columns_know_whose_a_window_is_and_which_are_walks():
+    sources = ["cmu_02_01.bvh", "cmu_05_06_dance.bvh", "cmu_005_12.bvh"]
+    names = ("mean", "one", "energy", "skating", "fastest", "depth")
+    rows = [
+        {name: float(k) for name in (*names, *(f"raw_{n}" for n in names), "again")}
+        for k in (1, 2, 4)
+    ]
+    found = inbetweens.columns(rows, sources)
+    assert found["group"].tolist() == ["2", "5", "5"]
+    made = {one.name: one for one in measures(inbetweens.KINDS, found, found["group"])}
+    assert made["inbetween_walks_over_interpolation"].value == 1
+    assert made["inbetween_raw_others_over_interpolation"].value == 3
+    assert made["inbetween_over_interpolation"].value == 2
+    ends = made["inbetween_fallback_share"]
+    assert (ends.low, ends.high) == (1, 3), "two persons, of whom one has two windows"
 
 
-def test_in_betweens_of_windows_are_measured_and_stand_in_the_page(folder, monkeypatch):
+def test_in_betweens_of_windows_are_measured(folder, monkeypatch):
     monkeypatch.setattr(inbetweens, "STEPS", 2)
     inbetweener = md.load("inbetweener")
     made = inbetweens.inbetween_records(inbetweener, "0", QUICK, "python -m x")
@@ -170,13 +172,10 @@ def test_in_betweens_of_windows_are_measured_and_stand_in_the_page(folder, monke
     assert records["real.inbetween_over_interpolation"]["value"] > 0
     assert records["real.gap40.inbetween_one_over_interpolation"]["seeds"]["windows"] == 2
     assert records["real.inbetween_walks_over_interpolation"]["value"] is None  # by their names
-    text = page.section(records)
-    assert "In-betweens of 2 windows of 2 recordings" in text
-    assert all(words in text for words in page.FILLED.values())
 
 
 def test_on_all_cores_the_numbers_are_the_same(folder):
-    inbetweener, windows = md.load("inbetweener"), inbetweens.windows_and_walks(QUICK)[0]
+    inbetweener, windows = md.load("inbetweener"), inbetweens.windows_of(QUICK)
     tasks = [(inbetweener, motion, 10, 1) for _, motion in windows[:2]]
     assert inbetweens.on_all_cores(tasks) == inbetweens.in_turn(tasks)
 
@@ -210,7 +209,7 @@ def test_without_recordings_it_says_what_to_set(monkeypatch, tmp_path):
         list(continuations.windows(FULL, RANGE))
 
 
-def test_a_variant_is_trained_measured_and_stands_in_the_page(folder, tmp_path, monkeypatch):
+def test_a_variant_is_trained_and_measured(folder, tmp_path, monkeypatch):
     monkeypatch.setattr(inbetweens, "STEPS", 2)
     (folder / "cmu30").mkdir()
     shutil.copy(folder / "bvh" / "walk0.bvh", folder / "cmu30" / "acrnn_x.bvh")
@@ -218,29 +217,24 @@ def test_a_variant_is_trained_measured_and_stands_in_the_page(folder, tmp_path, 
     budget = replace(
         trainings.QUICK, training=trainings.QUICK.training | {"config": sizes, "batch": 2}
     )
-    made = []
-    for name in ("ours", "no-recordings"):
-        made += trainings.budget_records(name, budget, tmp_path / "runs", "python -m x")
+    sweep = trainings.sweep(budget, tmp_path / "runs")
+    made = run(sweep, "ours", tmp_path / "rows", "python -m x")
     records = {one["name"]: one for one in made}
     ours = records["inbetween-budget.ours.inbetween_over_interpolation"]
-    assert ours["seeds"]["trainings"] == [0, 1] and len(set(ours["seeds"]["weights"])) == 2
-    assert ours["low"] <= ours["value"] <= ours["high"]
-    text = page.section(records)
-    assert "no recordings in training" in text and "other limbs" not in text
-    again = trainings.budget_records("ours", budget, tmp_path / "runs", "python -m x")
-    assert again == made[: len(again)], "a finished run is only read"
+    assert ours["seeds"]["trainings"] == 2 and ours["low"] <= ours["value"] <= ours["high"]
+    seeds = [records[f"{ours['name']}.seed{k}"]["value"] for k in (0, 1)]
+    assert seeds[0] != seeds[1]
 
 
 def test_a_row_of_the_budget_is_trained_and_no_other_part(monkeypatch, tmp_path):
     """The names of other parts begin alike."""
     asked = []
-    monkeypatch.setattr(
-        trainings,
-        "budget_records",
-        lambda name, budget, runs, command: asked.append((name, budget)),
-    )
-    results.records_of("inbetween-budget.ours", True, None, None, None, tmp_path, "python -m x")
-    assert asked == [("ours", trainings.QUICK)]
+    monkeypatch.setattr(trainings, "sweep", lambda budget, runs: (budget, runs))
+    monkeypatch.setattr(results, "run", lambda *given: asked.append(given))
+    context = results.Context(True, {}, tmp_path, tmp_path / "runs")
+    results.records_of("inbetween-budget.ours", context, {}, "python -m x")
+    made = trainings.QUICK, tmp_path / "runs" / "inbetween-budget"
+    assert asked == [(made, "ours", tmp_path / "inbetween-budget", "python -m x")]
 
 
 def test_variants_differ_from_the_recipe_in_what_they_say():
@@ -266,17 +260,6 @@ def test_whose_a_recording_is():
     assert whose("cmu_05_06_dance.bvh") == whose("cmu_005_12.bvh") == "5"
     assert whose("acrnn_salsa_01.bvh") == whose("cmu_acrnn_salsa_10.bvh") == whose("acrnn_x.bvh")
     assert whose("walk0.bvh") != whose("walk1.bvh")
-
-
-def test_each_block_says_what_is_measured_on_recordings():
-    name = "real.inbetween_over_interpolation"
-    records = {name: {"name": name, "value": 0.9, "low": 0.8, "high": 1.0, "unit": "ratio"}}
-    told = with_recordings("A table.\n", "inbetween", records)
-    assert told.startswith("A table.\n\n**On recordings**: error of the samples' mean")
-    assert "0.9 [0.8, 1]" in told and "walks alone" not in told, "what is not measured is left out"
-    for block in MISSING:
-        assert MISSING[block] in with_recordings("A table.\n", block, {})
-    assert with_recordings("", "walker", records) == "", "a block that is not there says nothing"
 
 
 def test_limbs_of_recordings_are_reconstructed_and_compared_with_lines(folder, monkeypatch):
@@ -307,5 +290,3 @@ def test_limbs_of_recordings_are_reconstructed_and_compared_with_lines(folder, m
         assert found[f"real.reconstruction_{limb}_others_over_lines"] == pytest.approx(
             others, rel=1e-4
         )
-    text = page.section({one["name"]: one for one in made})
-    assert "an arm, in all other motions" in text

@@ -16,11 +16,12 @@ from motiondiff_edu.metrics.bone_lengths import bone_rmse
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import JOINTS
 from motiondiff_edu.reconstruction import plain_way_back
-from tools.results.repairs import both, repair, tables
+from tools.results.repairs import both, repair
 from tools.results.repairs import dropout as dropout_part
 from tools.results.repairs import rivals as rivals_part
 from tools.results.repairs.rivals import rivals
-from tools.results.repairs.trials import as_given, interval_over_seeds, names_of, without
+from tools.results.repairs.trials import as_given, names_of, without
+from tools.results.walks.scores import measures_over_seeds
 from tools.results.walks.trials import unseen
 
 
@@ -64,26 +65,22 @@ def test_missing_joints_are_zero_once_standardised(trials):
     )
 
 
-def test_the_interval_is_over_trainings_as_well_as_clips():
-    alike = np.tile(np.linspace(0, 1, 40), (3, 1))
-    apart = alike + np.array([[-2.0], [0.0], [2.0]])
-    value, low, high = interval_over_seeds(np.mean, alike)
-    assert value == pytest.approx(0.5) and low < 0.5 < high and high - low < 0.3
-    wide = interval_over_seeds(np.mean, apart)
-    assert wide[0] == pytest.approx(0.5) and wide[1] < -0.5 and wide[2] > 1.5
-
-
 def test_gains_and_cost_by_hand():
-    plain = {"bone": np.full((3, 6), 9.0), "adherence": np.full((3, 6), 0.5)}
-    dropout = {"bone": np.full((3, 6), 4.0), "adherence": np.full((3, 6), 0.6)}
-    bone, adherence = dropout_part.gains(plain, dropout)
-    assert (bone.name, bone.value, bone.low, bone.high) == (
-        "dropout_gain_bone_cm",
-        *[pytest.approx(1.0)] * 3,
-    )
-    assert adherence.value == pytest.approx(-0.1) and adherence.unit == "m/s"
-    cost = dropout_part.cost("cost", plain, dropout)
-    assert cost.name == "cost" and cost.value == pytest.approx(1.2)  # the larger of 2/3 and 6/5
+    plain, dropout = {"bone": 9.0, "adherence": 0.5}, {"bone": 4.0, "adherence": 0.6}
+    rows = {
+        f"{side}_{past}_{row}": np.full((3, 6), value)
+        for side, values in (("plain", plain), ("dropout", dropout))
+        for past in ("complete", "missing")
+        for row, value in values.items()
+    }
+    kinds = dropout_part.COMPARED | {"cost": dropout_part.COST}
+    found = {one.name: one for one in measures_over_seeds(kinds, rows)}
+    bone, control = (found[f"dropout_gain_{name}"] for name in dropout_part.MEASURES)
+    assert (bone.value, bone.low, bone.high) == (pytest.approx(1.0),) * 3 and bone.unit == "cm"
+    assert control.value == pytest.approx(-0.1) and control.unit == "m/s"
+    assert found["dropout_missing_bone_cm"].value == pytest.approx(2)
+    assert found["plain_complete_adherence_mps"].value == pytest.approx(0.5)
+    assert found["cost"].value == pytest.approx(1.2)  # the larger of 2/3 and 6/5
 
 
 def test_each_comparison_has_names_of_its_own(trials, monkeypatch):
@@ -93,8 +90,8 @@ def test_each_comparison_has_names_of_its_own(trials, monkeypatch):
         dropout_part,
         "measured",
         lambda walkers, trials, share: {
-            kind: np.full((len(walkers), 4), 1 + share + ("plain" in walkers[0]))
-            for kind in dropout_part.MEASURES
+            row: np.full((len(walkers), 4), 1 + share + ("plain" in walkers[0]))
+            for row in ("bone", "adherence")
         },
     )
     weights = {n: n for n in ("walker", "walker-plain", *names_of("plain"), *names_of("dropout"))}
@@ -154,33 +151,6 @@ def test_repairs_of_a_walker_that_stands_are_the_mean_pose(trials):
     assert found["arm_rmse_over_ridge"].value == pytest.approx(
         found["arm_rmse_cm"].value / found["arm_rmse_ridge_cm"].value
     )
-
-
-def test_the_tables_say_what_the_records_say(tmp_path):
-    sections = (tables.dropout, tables.repairs, tables.inbetweens)
-    assert [section({}, tmp_path) for section in sections] == ["", "", ""]
-    seeds = {"trainings": 3, "frames": 10, "clips": 7, "missing": 0.3}
-
-    def one(name, value):
-        return dict(
-            name=name,
-            value=value,
-            low=value,
-            high=value,
-            seeds=seeds,
-            unit="cm",
-            paper=None,
-            command="",
-        )
-
-    names = [
-        "mend.pairs_dropout_cost_complete",
-        "mend.plain_missing_bone_cm",
-        "mend.dropout_missing_bone_cm",
-    ]
-    records = {name: one(name, 1.25 + k) for k, name in enumerate(names)}
-    said = tables.dropout(records, tmp_path)
-    assert "| missing | bone | - | - | 2.25 cm | 3.25 cm |" in said and "7 unseen pasts" in said
 
 
 def test_the_pairs_are_shipped_names():

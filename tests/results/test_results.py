@@ -1,7 +1,4 @@
-"""The results machinery, with the data itself as the walker.
-
-No error, ratios of one; and the page.
-"""
+"""The measures of walks, with the data itself as the walker: no error, ratios of one."""
 
 import json
 import sys
@@ -17,10 +14,7 @@ sys.path.insert(
 
 from motiondiff_edu.metrics.footsteps import footsteps, heel_speed  # noqa: E402
 from tools.results.__main__ import weights_of  # noqa: E402
-from tools.results.intervals import interval  # noqa: E402
 from tools.results.page import cards
-from tools.results.page.bars import BARS, Bar  # noqa: E402
-from tools.results.page.render import read_records, render  # noqa: E402
 from tools.results.walks import steps_table  # noqa: E402
 from tools.results.walks.scores import diversity, score  # noqa: E402
 
@@ -81,29 +75,6 @@ def test_the_rows_of_the_step_table_are_those_of_the_metric():
     )
 
 
-def test_an_interval_holds_the_mean_and_narrows_with_the_clips():
-    rng = np.random.default_rng(5)
-    few, many = (interval(np.mean, rng.normal(3, 1, n)) for n in (20, 2000))
-    assert few[1] < 3 < few[2] and many[2] - many[1] < 0.3 * (few[2] - few[1])
-
-
-def test_the_page_is_made_from_the_records(tmp_path):
-    keys = dict(
-        low=0.1, high=0.3, seeds={}, unit="cm", paper=None, command="python -m tools.results"
-    )
-    (tmp_path / "results").mkdir()
-    path = tmp_path / "results" / "walker.json"
-    path.write_text(json.dumps([dict(name="walker.bone_rmse_cm", value=0.2345, **keys)]))
-    (tmp_path / "bench").mkdir()
-    render(tmp_path, tmp_path / "bench")
-    page = (tmp_path / "RESULTS.md").read_text()
-    assert "| `walker.bone_rmse_cm` | at most 0.3 | 0.234 | [0.1, 0.3] | met |" in page
-    assert page.count("| not measured |") == len(BARS) - 1
-    path.with_name("old.json").write_text(path.read_text())
-    with pytest.raises(ValueError, match="stands in"):
-        read_records(tmp_path / "results")
-
-
 def test_a_card_tells_only_measures_of_its_own_weights(tmp_path):
     record = {"name": "walker.bone_rmse_cm", "value": 0.2, "seeds": {"weights": "abc"}}
     (tmp_path / "walker.json").write_text(json.dumps([record]))
@@ -120,15 +91,3 @@ def test_weights_to_measure_are_given_by_name_and_file(tmp_path):
     assert weights_of([f"mine={tmp_path}/w.safetensors"]) == {"mine": tmp_path / "w.safetensors"}
     with pytest.raises(SystemExit, match="NAME=FILE"):
         weights_of(["mine"])
-
-
-def test_bars_have_two_sides():
-    both = Bar("x", at_least=0.5, at_most=1.5)
-    assert (
-        both.met(0.5)
-        and both.met(1.5)
-        and not both.met(1.6)
-        and not both.met(0.4)
-        and both.text == "0.5 to 1.5"
-    )
-    assert not Bar("y", at_least=5).met(4.9) and Bar("z", at_most=0.3).met(0.3)

@@ -1,50 +1,39 @@
-"""Measure into docs/results, and write docs/RESULTS.md from it.
+"""Measure into docs/results, and write docs/RESULTS.md and docs/RESULTS_ALL.md from it.
 
     python -m tools.results [--only PART ...] [--full] [--quick] [--weights NAME=FILE] [--render]
 
-Parts: walker, walker-plain, walker-printed, walker-eps, walker-ddim10, walker-lookahead,
-walker-eps-lookahead, footsteps; dancer, dancer-plain, regression, unheard (music like none in
-training), guided (weights of guidance), ear (what the dancer hears, beside a beat tracker),
-dance-data (the data's own dances), attention, dance-time;
-mend (dropout and repairs), mend-both (both papers' repairs), inbetween, inbetween-departures (what
-each is worth), known-answer (methods of filling in, on tasks whose answer is a formula); words
-(motion from text: Table 2, captions that nobody trained for, editing); course (the checks of the
-exercises). These parts train, for minutes a row: ladder (from the paper's walker to ours),
-dance-budget, words-budget, inbetween-budget and mend-map. One row of them is a part as well:
-ladder.ours, dance-budget.v. By name alone are measured: what needs recordings, with
-MOTIONDIFF_REAL_DATA (recordings, recordings-inbetweens, recordings-reconstructions, real-music,
-inbetween-budget), and course-shown (pages and demos, after `make pages`).
-Without --only, all parts are measured for which there are shipped weights. --full adds the parts
-that train; otherwise their records stay as they are. A training that was killed continues. --quick
-measures little, into build/quick, and is for trying the code. --render only writes docs/RESULTS.md
-from the existing records.
+Without --only, all parts are measured for which there are shipped weights; a name that is not known
+lists all parts. --full adds the sweeps that train, for minutes or hours a variant: ladder (from the
+paper's walker to ours), dance-budget, words-budget and mend-map. One variant of a sweep is a part
+as well: ladder.ours, dance-budget.v. Otherwise their records stay as they are. A training that was
+killed continues. By name alone are measured: what needs recordings, with MOTIONDIFF_REAL_DATA
+(recordings, recordings-inbetweens, recordings-reconstructions, real-music, inbetween-budget), and
+course-shown (pages and demos, after `make pages`). --quick measures little, into build/quick, and
+is for trying the code. --render only writes the pages from the existing records.
 """
 
 import argparse
 import sys
 import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from benchmarks.records import show, write_records
 from motiondiff_edu._files import replacing
+from motiondiff_edu.performers.dancer import Dancer
+from motiondiff_edu.performers.inbetweener import Inbetweener
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.viz.metrics import footstep_curves
 
 from .course.exercises import course_records
 from .course.shown import shown_records
 from .dances import budget as dance_budget
+from .dances import parts as dances
 from .dances import real_music
 from .dances.attention import attention_picture, attention_records
-from .dances.guided import guided_records
 from .dances.hearing import hearing_records
-from .dances.parts import (
-    DANCE_FULL,
-    DANCE_QUICK,
-    DANCES,
-    Stage,
-    dance_records,
-    data_records,
-)
 from .dances.timing import TIMED, time_records
 from .inbetweens import departures, inbetween, known_answer
 from .page.cards import add_metrics
@@ -54,52 +43,158 @@ from .recordings import inbetweens as recorded_inbetweens
 from .recordings import windows as recorded
 from .repairs import both, dropout, mend, repair
 from .repairs.trials import names_of
+from .sweep import Sweep, Variant, run
 from .walks import ladder
-from .walks.parts import (
-    FULL,
-    LINES,
-    QUICK,
-    Bench,
-    Walks,
-    footstep_records,
-    walker_records,
-    weights_digest,
-)
+from .walks.parts import FULL, LINES, QUICK, Bench, Walks, footstep_records, walker_records
+from .walks.parts import weights_digest as digest
 from .words import budget as word_budget
 from .words import parts as words
 
 DOCS, RUNS = Path("docs"), Path("build/runs")
-MEASURED = (
-    "footsteps",
-    "dance-data",
-    "attention",
-    "dance-time",
-    "known-answer",
-    "course",
-)  # parts that need shipped weights, or none
-FILLS_IN, MASKED = departures.SHOWN, departures.NOT_SHOWN  # the weights of in-betweens
-MENDED = {  # parts that need these weights
-    "mend": {"walker", "walker-plain", *names_of("plain"), *names_of("dropout")},
-    "mend-both": {both.WALKER, MASKED},
-    "inbetween": {FILLS_IN, MASKED},
-    "inbetween-departures": {FILLS_IN, MASKED},
-    "words": {"mover"},
-    "guided": {"dancer"},
-    "ear": {"dancer"},
-}
-TRAINED = {
-    "ladder": ("pace", "rates", *ladder.CELLS),
-    "dance-budget": tuple(dance_budget.VARIANTS),
-    "mend-map": tuple(dropout.RATES),
-    "words-budget": tuple(word_budget.VARIANTS),
-    "inbetween-budget": tuple(trainings.VARIANTS),
-}
-# by name alone: recordings are not part of the project, pages are made before
-BY_NAME = (
-    "recordings", "recordings-inbetweens", "recordings-reconstructions", "inbetween-budget",
-    "real-music", "course-shown",
-)  # fmt: skip
 ROUNDS = 7  # of dance-time
+
+
+@dataclass(frozen=True)
+class Context:
+    """How much is measured, with which weights, and where records and trainings are kept."""
+
+    quick: bool
+    weights: Mapping[str, Path]  # those that are not shipped
+    folder: Path
+    runs: Path
+
+    @cached_property
+    def bench(self) -> Bench:
+        return Bench(self.of(FULL, QUICK), dict(self.weights))
+
+    @cached_property
+    def stage(self) -> dances.Stage:
+        return dances.Stage(self.of(dances.DANCE_FULL, dances.DANCE_QUICK), dict(self.weights))
+
+    def of(self, full, quick):
+        """The size of a measurement."""
+        return quick if self.quick else full
+
+    def performer(self, name: str) -> tuple[Dancer | Inbetweener, str]:
+        """A dancer or an in-betweener, and the digest of its weights."""
+        path = self.stage.weights[name]
+        return checkpoints.load(path), digest(path)
+
+    def walker(self) -> tuple:
+        """The shipped walker, the digest of its weights, and the size for recordings."""
+        path = self.bench.weights["walker"]
+        return checkpoints.load_walker(path), digest(path), self.recorded
+
+    @property
+    def recorded(self) -> recorded.RecordedSize:
+        return self.of(recorded.FULL, recorded.QUICK)
+
+
+@dataclass(frozen=True)
+class Part:
+    """What is measured in one go, and the weights that it needs."""
+
+    records: Callable[[Context, str], list[dict]]  # also takes the command
+    weights: frozenset[str] = frozenset()
+    by_name: bool = False  # recordings are not part of the project, pages are made before
+
+
+def part(records: Callable, *weights: str, by_name: bool = False) -> Part:
+    return Part(records, frozenset(weights), by_name)
+
+
+def footsteps(c: Context, command: str) -> list[dict]:
+    records, curves = footstep_records(c.bench, command)
+    shown = {name: one for name, one in curves.items() if not name.endswith("-robust")}
+    save(footstep_curves(shown), c.folder / "footsteps.png")
+    return records
+
+
+def attention(c: Context, command: str) -> list[dict]:
+    save(attention_picture(c.stage), c.folder / "attention.png")
+    return attention_records(c.stage, command)
+
+
+def words_records(c: Context, command: str) -> list[dict]:
+    studio = words.Studio(words.size_of(c.quick), c.bench.weights)
+    return words.word_records(studio, command, words.on_all_cores)
+
+
+def continued(c: Context, command: str) -> list[dict]:
+    measured = *c.walker(), command
+    return [*continuations.recorded_records(*measured), *persons.person_records(*measured)]
+
+
+SHOWN, MASKED = departures.SHOWN, departures.NOT_SHOWN  # the weights of in-betweens
+PARTS = {
+    **{name: part(lambda c, command, name=name: dances.dance_records(c.stage, name, command),
+                  weights) for name, weights in dances.DANCES.items()},
+    "footsteps": part(footsteps),
+    "dance-data": part(lambda c, command: dances.data_records(c.stage, command)),
+    "attention": part(attention, "dancer"),
+    "dance-time": part(lambda c, command: time_records(
+        TIMED, c.of(dance_budget.FULL, dance_budget.QUICK), c.of(ROUNDS, 2), command)),
+    "known-answer": part(lambda c, command: known_answer.known_answer_records(
+        c.of(known_answer.FULL, known_answer.QUICK), command)),
+    "course": part(lambda c, command: course_records(command, c.of(None, 3))),
+    "mend": part(lambda c, command: mend.records(c.bench, c.of(repair.FULL, repair.QUICK), command),
+                 "walker", "walker-plain", *names_of("plain"), *names_of("dropout")),
+    "mend-both": part(lambda c, command: both.both_records(
+        c.bench, c.stage.dancer(MASKED), c.of(repair.FULL, repair.QUICK), command),
+        both.WALKER, MASKED),
+    "inbetween": part(lambda c, command: inbetween.inbetween_records(
+        c.performer(SHOWN), c.performer(MASKED), c.of(inbetween.FULL, inbetween.QUICK), command),
+        SHOWN, MASKED),
+    "words": part(words_records, "mover"),
+    "guided": part(lambda c, command: dances.guided_records(c.stage, command), "dancer"),
+    "ear": part(lambda c, command: hearing_records(c.stage, command), "dancer"),
+    "recordings": part(continued, "walker", by_name=True),
+    "recordings-reconstructions": part(
+        lambda c, command: reconstructions.reconstruction_records(*c.walker(), command), "walker",
+        by_name=True),
+    "recordings-inbetweens": part(lambda c, command: recorded_inbetweens.inbetween_records(
+        *c.performer(SHOWN), c.recorded, command, recorded_inbetweens.on_all_cores), SHOWN,
+        by_name=True),
+    "real-music": part(lambda c, command: real_music.music_records(
+        *c.performer("dancer"), c.of(real_music.FULL, real_music.QUICK), command), "dancer",
+        by_name=True),
+    "course-shown": part(lambda c, command: shown_records(command), by_name=True),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Trained:
+    """A sweep: its variants, and how it is made; `weights`: of one that trains nothing."""
+
+    variants: Mapping[str, Variant]
+    sweep: Callable[[Context, Path], Sweep]
+    by_name: bool = False
+    weights: frozenset[str] | None = None
+
+
+SWEEPS = {
+    "inbetween-departures": Trained(
+        departures.VARIANTS,
+        lambda c, runs: departures.sweep({name: c.performer(name) for name in (SHOWN, MASKED)},
+                                         c.of(inbetween.FULL, inbetween.QUICK)),
+        weights=frozenset({SHOWN, MASKED})),
+    "ladder": Trained(
+        ladder.VARIANTS, lambda c, runs: ladder.sweep(c.of(ladder.FULL, ladder.QUICK), runs)),
+    "dance-budget": Trained(
+        dance_budget.VARIANTS,
+        lambda c, runs: dance_budget.sweep(c.of(dance_budget.FULL, dance_budget.QUICK), runs)),
+    "mend-map": Trained(
+        dropout.VARIANTS,
+        lambda c, runs: dropout.sweep(c.of(dropout.MAP_FULL, dropout.MAP_QUICK), runs,
+                                      c.bench.trials)),
+    "words-budget": Trained(
+        word_budget.VARIANTS,
+        lambda c, runs: word_budget.sweep(c.of(word_budget.FULL, word_budget.QUICK), runs)),
+    "inbetween-budget": Trained(
+        trainings.VARIANTS,
+        lambda c, runs: trainings.sweep(c.of(trainings.FULL, trainings.QUICK), runs),
+        by_name=True),
+}  # fmt: skip
 
 
 def arguments() -> argparse.Namespace:
@@ -114,11 +209,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument(
         "--weights", nargs="+", default=[], metavar="NAME=FILE", help="weights that are not shipped"
     )
-    parser.add_argument(
-        "--render",
-        action="store_true",
-        help="only write docs/RESULTS.md, from the existing records",
-    )
+    parser.add_argument("--render", action="store_true", help="only write the pages")
     return parser.parse_args()
 
 
@@ -129,8 +220,10 @@ def main() -> None:
         measure(chosen, docs / "results")
     if not chosen.quick:
         add_metrics(docs / "results")
-    render(docs)
-    print(f"written: {docs / 'RESULTS.md'}")
+    missing = render(docs)
+    if missing and not chosen.quick:
+        print(f"the template names records that do not exist: {', '.join(missing)}")
+    print(f"written: {docs / 'RESULTS.md'} and {docs / 'RESULTS_ALL.md'}")
 
 
 def weights_of(items: list[str]) -> dict[str, Path]:
@@ -145,147 +238,54 @@ def weights_of(items: list[str]) -> dict[str, Path]:
     return {name: Path(file) for name, _, file in pairs}
 
 
-def parts_of(only: list[str], full: bool, lines: dict[str, Walks], weights: set[str]) -> list[str]:
-    """The chosen parts, row by row.
+def parts_of(only: list[str], full: bool, lines: Mapping[str, Walks], weights: set[str]) -> list:
+    """The chosen parts; a sweep is its variants, each a part of its own.
 
-    Without a choice these are all parts that have weights, and with `full` those that train.
-
+    Without a choice these are all parts that have weights, and with `full` the sweeps that train.
     Exits with the list of names when one is unknown.
     """
     there = [prefix for prefix, line in lines.items() if line.name in weights]
-    there += [part for part, name in DANCES.items() if name in weights]
-    there += [part for part in MEASURED if part != "attention" or "dancer" in weights]
-    there += [part for part, names in MENDED.items() if names <= weights]
-    rows = {part: [f"{part}.{name}" for name in names] for part, names in TRAINED.items()}
-    trained = [part for part in rows if part not in BY_NAME] if full else []
-    wanted = only or [*there, *trained]
-    parts = [row for part in wanted for row in rows.get(part, [part])]
-    names = [*lines, *DANCES, *MEASURED, *MENDED, *BY_NAME]
+    there += [n for n, one in PARTS.items() if one.weights <= weights and not one.by_name]
+    for name, one in SWEEPS.items():
+        trains = one.weights is None
+        if (full and not one.by_name) if trains else one.weights <= weights:
+            there.append(name)
+    rows = {n: [f"{n}.{variant}" for variant in one.variants] for n, one in SWEEPS.items()}
+    parts = [row for name in only or there for row in rows.get(name, [name])]
+    names = [*lines, *PARTS]
     unknown = sorted(set(parts) - {*names, *(row for group in rows.values() for row in group)})
     if unknown:
-        there = ", ".join(dict.fromkeys([*names, *rows]))
         sys.exit(
-            f"no part is called {', '.join(unknown)}; there are: {there}; rows: "
-            "ladder.ours, dance-budget.v ..."
+            f"no part is called {', '.join(unknown)}; there are: {', '.join([*names, *rows])}; "
+            "variants of the last: ladder.ours, dance-budget.v ..."
         )
     return parts
 
 
 def measure(chosen: argparse.Namespace, folder: Path) -> None:
-    """Run the chosen parts and write their records.
-
-    The records of all other parts stay as they are.
-    """
+    """Run the chosen parts and write their records; those of all other parts stay as they are."""
     extra = weights_of(chosen.weights)
-    bench = Bench(QUICK if chosen.quick else FULL, extra)
+    runs = folder / "runs" if chosen.quick else RUNS
+    context = Context(chosen.quick, extra, folder, runs)
     lines = LINES | {name: Walks(name, name) for name in extra}
-    stage = Stage(DANCE_QUICK if chosen.quick else DANCE_FULL, extra)
     suffix = " --quick" * chosen.quick + "".join(f" --weights {item}" for item in chosen.weights)
-    for part in parts_of(chosen.only, chosen.full, lines, set(bench.weights)):
+    for name in parts_of(chosen.only, chosen.full, lines, set(context.bench.weights)):
         began = time.monotonic()
-        command = f"python -m tools.results --only {part}{suffix}"
-        records = records_of(part, chosen.quick, bench, stage, lines, folder, command)
+        records = records_of(name, context, lines, f"python -m tools.results --only {name}{suffix}")
         show([one for one in records if one["value"] is not None])
-        write_records(folder / f"{part}.json", records)
-        print(f"{part}: {time.monotonic() - began:.0f} s", flush=True)
+        write_records(folder / f"{name}.json", records)
+        print(f"{name}: {time.monotonic() - began:.0f} s", flush=True)
 
 
-def records_of(
-    part: str, quick: bool, bench: Bench, stage: Stage, lines, folder: Path, command: str
-) -> list[dict]:
-    """The records of one part; its figure, where it has one, is written beside them."""
-    group, _, row = part.partition(".")
-    if group == "ladder":
-        size, runs = (ladder.QUICK, folder / "runs") if quick else (ladder.FULL, RUNS / group)
-        return ladder.measure(row, folder / group, runs, size, command)
-    if group == "dance-budget":
-        size, runs = (
-            (dance_budget.QUICK, folder / "runs") if quick else (dance_budget.FULL, RUNS / group)
-        )
-        return dance_budget.budget_records(row, size, runs, command)
-    if group == "mend-map":
-        size, runs = (
-            (dropout.MAP_QUICK, folder / "map") if quick else (dropout.MAP_FULL, RUNS / group)
-        )
-        return dropout.map_records(row, size, bench.trials, runs, command)
-    if part == "mend":
-        return mend.records(bench, repair.QUICK if quick else repair.FULL, command)
-    if part in ("inbetween", "inbetween-departures"):
-        networks = {
-            name: (checkpoints.load(stage.weights[name]), weights_digest(stage.weights[name]))
-            for name in (FILLS_IN, MASKED)
-        }
-        size = inbetween.QUICK if quick else inbetween.FULL
-        if part == "inbetween":
-            return inbetween.inbetween_records(*networks.values(), size, command)
-        return departures.departure_records(networks, size, command)
-    if part == "mend-both":
-        size = repair.QUICK if quick else repair.FULL
-        return both.both_records(bench, stage.dancer(MASKED), size, command)
-    if part in ("recordings", "recordings-reconstructions"):
-        path = bench.weights["walker"]
-        size = recorded.QUICK if quick else recorded.FULL
-        measured = checkpoints.load_walker(path), weights_digest(path), size, command
-        if part == "recordings-reconstructions":
-            return reconstructions.reconstruction_records(*measured)
-        return [*continuations.recorded_records(*measured), *persons.person_records(*measured)]
-    if part == "recordings-inbetweens":
-        return recorded_inbetweens.inbetween_records(
-            checkpoints.load(stage.weights[FILLS_IN]),
-            weights_digest(stage.weights[FILLS_IN]),
-            recorded.QUICK if quick else recorded.FULL,
-            command,
-            recorded_inbetweens.on_all_cores,
-        )
-    if part == "real-music":
-        return real_music.music_records(
-            stage.dancer("dancer"),
-            weights_digest(stage.weights["dancer"]),
-            real_music.QUICK if quick else real_music.FULL,
-            command,
-        )
-    if part == "guided":
-        return guided_records(stage, command)
-    if part == "ear":
-        return hearing_records(stage, command)
-    if part == "dance-data":
-        return data_records(stage, command)
-    if part == "words":
-        studio = words.Studio(words.size_of(quick), bench.weights)
-        return words.word_records(studio, command, words.on_all_cores)
-    if group == "inbetween-budget":
-        budget = trainings.QUICK if quick else trainings.FULL
-        runs = folder / "runs" if quick else RUNS / group
-        return trainings.budget_records(row, budget, runs, command)
-    if group == "words-budget":
-        size, runs = (
-            (word_budget.QUICK, folder / "runs") if quick else (word_budget.FULL, RUNS / group)
-        )
-        return word_budget.budget_records(row, size, words.panel_of(size.trials), runs, command)
-    if part == "known-answer":
-        return known_answer.known_answer_records(
-            known_answer.QUICK if quick else known_answer.FULL, command
-        )
-    if part == "course-shown":
-        return shown_records(command)
-    if part == "course":
-        return course_records(command, 3 if quick else None)
-    if part == "dance-time":
-        size, rounds = (dance_budget.QUICK, 2) if quick else (dance_budget.FULL, ROUNDS)
-        return time_records(TIMED, size, rounds, command)
-    if part == "footsteps":
-        records, curves = footstep_records(bench, command)
-        save(
-            footstep_curves({k: v for k, v in curves.items() if not k.endswith("-robust")}),
-            folder / "footsteps.png",
-        )
-        return records
-    if part == "attention":
-        save(attention_picture(stage), folder / "attention.png")
-        return attention_records(stage, command)
-    if part in DANCES:
-        return dance_records(stage, part, command)
-    return walker_records(bench, lines[part], command)
+def records_of(name: str, context: Context, lines: Mapping, command: str) -> list[dict]:
+    """The records of one part; its picture, where it has one, is written beside them."""
+    group, _, variant = name.partition(".")
+    if group in SWEEPS:
+        sweep = SWEEPS[group].sweep(context, context.runs / group)
+        return run(sweep, variant, context.folder / group, command)
+    if name in PARTS:
+        return PARTS[name].records(context, command)
+    return walker_records(context.bench, lines[name], command)
 
 
 def save(figure, path: Path) -> None:

@@ -26,8 +26,7 @@ from motiondiff_edu.viz.listening import levels_over_sound
 from ..walks.parts import weights_digest
 from ..walks.scores import Measure, measure_of, ratio
 from .parts import Stage
-from .songs import FPS, TRAINED, UNSEEN, Songs
-from .trials import dances_of
+from .songs import FPS, TRAINED, UNSEEN, Songs, dances_of
 
 NOISE = (0.25, 0.5, 0.75)  # diffusion steps over which the maps are averaged
 SHIFTS = 100

@@ -12,9 +12,6 @@ from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
 
-import numpy as np
-
-from motiondiff_edu._files import digest_of_tensors, replacing
 from motiondiff_edu.baselines.transformer import TransformerConfig
 from motiondiff_edu.mofusion import MOFUSION_SMALL
 from motiondiff_edu.performers.dance_windows import DanceWindows
@@ -31,10 +28,12 @@ from motiondiff_edu.recipes.ear import EAR
 from motiondiff_edu.recipes.songs import training_songs
 from motiondiff_edu.recipes.train_dancer import train_dancer, training_windows
 
-from ..walks.scores import Measure
+from ..page.records import DANCES
+from ..sweep import Sweep, Variant
+from ..walks.scores import Kind
 from .mfcc import CHANNELS, mfcc_and_beats, with_music_features
-from .parts import Danced, DanceSize, Stage, danced
-from .scores import bone_gain, share_minus
+from .parts import DANCED, DanceSize, Stage, danced
+from .scores import SHARE, bone_gain, share
 from .songs import UNSEEN, mel_of
 
 LIKE = (
@@ -52,50 +51,57 @@ EPS = replace(
 NO_FEET = {
     "loss_weights": DanceLossWeights(changes=5.0)
 }  # errors of eps or v are not positions, so they have no toes
-# name: (what differs, in words, from which other one, the network, settings of the training)
+
+
+def differs(words: str, *rivals: str, config=X0, **settings) -> Variant:
+    """A dancer that differs from its first rival in what the words say."""
+    return Variant(words, (config, settings), {rival: rival for rival in rivals})
+
+
 VARIANTS = {
-    "x0": (LIKE, "", X0, {}),
-    "no-feet": ("errors of poses and of changes, not of feet", "x0", X0, NO_FEET),
-    "poses": (
-        "errors of poses alone, as the paper has it",
-        "no-feet",
-        X0,
-        {"loss_weights": DanceLossWeights()},
+    "x0": differs(LIKE),
+    "no-feet": differs("errors of poses and of changes, not of feet", "x0", **NO_FEET),
+    "poses": differs(
+        "errors of poses alone, as the paper has it", "no-feet", loss_weights=DanceLossWeights()
     ),
-    "eps": ("target eps, with its skip", "no-feet", EPS, NO_FEET),
-    "eps-weighted": (
-        "high noise weighted, up to 21 times",
-        "eps",
-        EPS,
-        {"loss_weights": DanceLossWeights(changes=5.0, high_noise=20.0)},
+    "eps": differs("target eps, with its skip", "no-feet", config=EPS, **NO_FEET),
+    "eps-weighted": differs(
+        "high noise weighted, up to 21 times", "eps", config=EPS,
+        loss_weights=DanceLossWeights(changes=5.0, high_noise=20.0),
     ),
-    "v": ("target v, with the skip", "no-feet", replace(EPS, target="v"), NO_FEET),
-    "constant": ("kinematic losses, all steps alike", "x0", X0, KIN["constant"]),
-    "alpha_bar": ("kinematic losses weighted by alpha_bar", "x0", X0, KIN["alpha_bar"]),
-    "snr": (
+    "v": differs("target v, with the skip", "no-feet", config=replace(EPS, target="v"), **NO_FEET),
+    "constant": differs("kinematic losses, all steps alike", "x0", **KIN["constant"]),
+    "alpha_bar": differs(
+        "kinematic losses weighted by alpha_bar", "x0", "constant", **KIN["alpha_bar"]
+    ),
+    "snr": differs(
         "kinematic losses weighted by alpha_bar / (1 - alpha_bar), 5 at most",
-        "x0",
-        X0,
-        KIN["snr"],
+        "x0", "constant", "alpha_bar", **KIN["snr"],
     ),
-    "slide": ("a foot loss of 2", "alpha_bar", X0, {"kinematic": replace(KINEMATIC, slide=2.0)}),
-    "cosine": ("the cosine schedule as it is", "x0", X0, {"snr": 1.0}),
-    "gain-noise": ("music as from different loudspeakers", "x0", X0, {"gain_noise": 0.3}),
-    "ear": ("an ear that was trained first, on the same songs", "x0", HEARING, {"ear": EAR}),
-    "linear-music": ("one linear layer for the music", "x0", replace(X0, music_layers=0), {}),
-    "transformer": ("a plain transformer of equal size", "x0", PLAIN, {}),
-    "mfcc": ("MFCC and the true beats instead of Mel", "x0", replace(X0, C=CHANNELS), {}),
-    "regression": (
-        "regression, errors of poses alone",
-        "transformer",
-        replace(PLAIN, deterministic=True),
-        {},
+    "slide": differs("a foot loss of 2", "alpha_bar", kinematic=replace(KINEMATIC, slide=2.0)),
+    "cosine": differs("the cosine schedule as it is", "x0", snr=1.0),
+    "gain-noise": differs("music as from different loudspeakers", "x0", gain_noise=0.3),
+    "ear": differs(
+        "an ear that was trained first, on the same songs", "x0", config=HEARING, ear=EAR
     ),
-}
-RIVALS = {"alpha_bar": ("constant",), "snr": ("constant", "alpha_bar")}  # also compared with these
+    "linear-music": differs(
+        "one linear layer for the music", "x0", config=replace(X0, music_layers=0)
+    ),
+    "transformer": differs("a plain transformer of equal size", "x0", config=PLAIN),
+    "mfcc": differs(
+        "MFCC and the true beats instead of Mel", "x0", config=replace(X0, C=CHANNELS)
+    ),
+    "regression": differs(
+        "regression, errors of poses alone", "transformer",
+        config=replace(PLAIN, deterministic=True),
+    ),
+}  # fmt: skip
 MUSIC_FEATURES = {"mfcc": mfcc_and_beats}  # all others use log-Mel
-SHARE = ("bas", "bas_shuffled")
-DANCES = 2  # of data_synth: from 2 on they travel, turn and change level, to songs like recordings
+N = len(SHARE)
+DIFFERENCES = {
+    "bas_share_minus_{}": Kind("of the data's", SHARE, lambda *x: share(*x[:N]) - share(*x[N:])),
+    "bone_gain_over_{}": Kind("share", ("bones",), bone_gain),
+}
 
 
 @dataclass(frozen=True)
@@ -106,27 +112,24 @@ class Budget:
     songs: int = 400
     seconds: float = 20.0
     batch: int = 16
-    save_every: int = 50
     ear_steps: int = 2400  # of an ear, which is trained first
     measured: DanceSize = DanceSize(songs=30, seeds=2, pieces=10, each=8)
 
 
 FULL = Budget()
-QUICK = Budget(3, 2, 8.0, batch=3, save_every=2, ear_steps=2, measured=DanceSize(3, 1, 2, 2))
+QUICK = Budget(3, 2, 8.0, batch=3, ear_steps=2, measured=DanceSize(3, 1, 2, 2))
 
 
-def recipe_of(name: str, budget: Budget) -> SongRecipe:
-    """The training of one variant, as `recipes.train_dancer` understands it."""
-    _, _, config, settings = VARIANTS[name]
-    sizes = {
-        key: getattr(budget, key) for key in ("steps", "songs", "seconds", "batch", "save_every")
-    }
+def recipe_of(name: str, budget: Budget, seed: int = 0) -> SongRecipe:
+    """The training of one variant with one seed, as `recipes.train_dancer` understands it."""
+    config, settings = VARIANTS[name].recipe
+    sizes = {key: getattr(budget, key) for key in ("steps", "songs", "seconds", "batch")}
     plain = {"config": config, "gain_noise": 0.0, "no_music": 0.0, "ear": None}
     settings = sizes | plain | settings
     if settings["ear"]:
-        alike = {key: sizes[key] for key in ("songs", "seconds", "save_every")}
+        alike = {key: sizes[key] for key in ("songs", "seconds")}
         settings["ear"] = replace(EAR, steps=budget.ear_steps, **alike)
-    return replace(DANCER_PLAIN, name=f"dance-budget.{name}", **settings)
+    return replace(DANCER_PLAIN, name=f"dance-budget.{name}", seed=seed, **settings)
 
 
 @cache
@@ -148,81 +151,33 @@ def stage(name: str, budget: Budget) -> Stage:
     return Stage(budget.measured, hear=MUSIC_FEATURES.get(name, mel_of))
 
 
-def trained(name: str, budget: Budget, runs: Path) -> Dancer:
+def trained(name: str, seed: int, budget: Budget, runs: Path) -> Dancer:
     """The dancer of one variant.
 
     A run that was killed continues; one that is finished is only read.
     """
     features = name if name in MUSIC_FEATURES else ""
     runs.mkdir(parents=True, exist_ok=True)
-    run, log = runs / f"{name}.safetensors", partial(print, flush=True)
-    return train_dancer(recipe_of(name, budget), run, material(features, budget), log)
+    run, log = runs / f"{name}-{seed}.safetensors", partial(print, flush=True)
+    return train_dancer(recipe_of(name, budget, seed), run, material(features, budget), log)
 
 
-def about(name: str, budget: Budget) -> str:
+def about(name: str, budget: Budget) -> dict:
     """The settings of a row: training, songs and dances, and sampler."""
-    return repr((recipe_of(name, budget), budget.measured, DANCES, STEPS, ETA))
-
-
-def gains(name: str, found: Danced, runs: Path, budget: Budget) -> list[Measure]:
-    """The gains of a row over the row with which it is compared, on the same songs.
-
-    The bootstrap draws both together.
-    """
-    measures = []
-    own = [rows[key] for rows in (found.own, found.data) for key in SHARE]
-    for rival in filter(None, (VARIANTS[name][1], *RIVALS.get(name, ()))):
-        kept = runs / f"{rival}.npz"
-        other = dict(np.load(kept)) if kept.is_file() else {"about": ""}
-        if str(other["about"]) != about(rival, budget):
-            print(
-                f"{name}: {rival} was not measured here under the same budget, "
-                "so there are no differences to it"
-            )
-            continue
-        measures.append(
-            share_minus(
-                f"bas_share_minus_{rival}", own, [other["own_" + k] for k in SHARE] + own[2:]
-            )
-        )
-        measures.append(
-            replace(bone_gain(found.squares, other["squares"]), name=f"bone_gain_over_{rival}")
-        )
-    return measures
-
-
-def keep(name: str, found: Danced, runs: Path, budget: Budget) -> None:
-    """Save the rows of each song, for variants that are compared with this one."""
-    rows = {f"own_{key}": found.own[key] for key in SHARE} | {"squares": found.squares}
-    rows["about"] = np.array(about(name, budget))
-    with replacing(runs / f"{name}.npz") as aside, open(aside, "wb") as file:
-        np.savez(file, **rows)
-
-
-def on_old_dances(record: dict) -> bool:
-    """Whether a variant was trained and measured on earlier dances than those of today."""
-    ours = record["name"].startswith("dance-budget.")
-    return ours and record["seeds"].get("dances", 1) < DANCES
-
-
-def budget_records(name: str, budget: Budget, runs: Path, command: str) -> list[dict]:
-    """Train (or continue) one variant, and measure it."""
-    dancer = trained(name, budget, runs)
-    songs = stage(name if name in MUSIC_FEATURES else "", budget)
-    found = danced(songs, dancer)
-    keep(name, found, runs, budget)
     size, recipe = budget.measured, recipe_of(name, budget)
-    seeds = {
-        "data": UNSEEN,
-        "songs": size.songs,
-        "dances": DANCES,
-        "sampling": list(range(size.seeds)),
-        "steps": STEPS,
-        "eta": ETA,
-    }
-    seeds |= {"training": recipe.seed, "trained_steps": recipe.steps, "trained_songs": recipe.songs}
-    seeds |= {"batch": recipe.batch, "weights": digest_of_tensors(dancer.model.state_dict())[:16]}
-    if recipe.ear:
-        seeds["ear_steps"] = recipe.ear.steps
-    measures = [*found.measures, *gains(name, found, runs, budget)]
-    return [measure.as_record(f"dance-budget.{name}.", seeds, command) for measure in measures]
+    found = {"data": UNSEEN, "songs": size.songs, "dances": DANCES, "samples": size.seeds}
+    found |= {"pieces": [size.pieces, size.each], "steps": STEPS, "eta": ETA}
+    found |= {"trained_steps": recipe.steps, "trained_songs": recipe.songs, "batch": recipe.batch}
+    return found | ({"ear_steps": recipe.ear.steps} if recipe.ear else {})
+
+
+def sweep(budget: Budget, runs: Path) -> Sweep:
+    """The dancers, with one training seed each."""
+
+    def measure(name: str, dancer: Dancer, seed: int) -> dict:
+        return danced(stage(name if name in MUSIC_FEATURES else "", budget), dancer).rows
+
+    return Sweep(
+        "dance-budget", VARIANTS, lambda name, seed: trained(name, seed, budget, runs), measure,
+        DANCED, DIFFERENCES, lambda name: about(name, budget),
+    )  # fmt: skip

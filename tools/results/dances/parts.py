@@ -10,28 +10,34 @@ from itertools import islice
 from pathlib import Path
 
 import numpy as np
+import torch
+from jaxtyping import Float
 
 from data_synth.music import songs
 from data_synth.music.recorded import recorded_song
 from data_synth.music.tempi import HELD_OUT_TEMPI, held_out
 from data_synth.music.varied import varied_songs
+from motiondiff_edu.motion.cleanup import Body, clean_up
 from motiondiff_edu.performers.dancer import STEPS, Dancer
 from motiondiff_edu.pretrained import checkpoints
 
 from ..walks.parts import weights_digest
-from ..walks.scores import Measure
-from .finishing import finishing_measures
+from ..walks.scores import FPS, Measure, measure_of, measures
 from .floor import data_floor_measures, floor_measures, floor_rows
 from .genres import SEED, GenreJudge, features_by_window, genre_measures, judge_of
 from .scores import (
-    beat_measures,
+    BEATS,
+    BONES,
+    SHARE,
+    VARIETY,
+    beat_rows,
     bone_gain,
-    bone_measure,
+    bone_rows,
     features_of,
     longer,
     repeat_measure,
     rows_of,
-    variety_measures,
+    variety_rows,
     worst_share,
 )
 from .songs import (
@@ -43,12 +49,14 @@ from .songs import (
     Songs,
     danced_by_the_data,
     dances_by_the_data,
+    dances_of,
     judged_songs,
     mel_of,
 )
-from .trials import dances_of
 
 LONG = (200, 400)
+WEIGHTS = (1, 2, 4)  # of guidance
+FINISHED = ("bas_share", "speed_over_data", "skating_mps", "bone_rmse_cm")
 DANCES = {
     "dancer": "dancer",
     "dancer-plain": "dancer-plain",
@@ -57,10 +65,7 @@ DANCES = {
 }  # weights
 # properties that no song of training has. These songs are the composer's own, in one feel, and so
 # differ from those of training in more than their name says
-UNHEARD = {
-    "metre5": {"metre": 5},
-    "mallets": {"timbre": "mallets"},
-}
+UNHEARD = {"metre5": {"metre": 5}, "mallets": {"timbre": "mallets"}}
 TEMPI_KEPT_OUT = {f"tempo{low:g}-{high:g}": ((low, high),) for low, high in HELD_OUT_TEMPI}
 
 
@@ -128,23 +133,24 @@ def dances(stage: Stage, dancer: Dancer, frames: int, seeds: int) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Danced:
-    """One dancer's measures, and the rows (one for each song) behind them."""
+    """One dancer's dances, and the rows (one number for each song) of DANCED."""
 
-    measures: list[Measure]
     made: np.ndarray  # (seeds, songs, frames, 21, 3)
-    own: dict[str, np.ndarray]
-    data: dict[str, np.ndarray]
-    squares: np.ndarray  # errors of bones, cm^2
+    rows: dict[str, np.ndarray]
+
+    @property
+    def measures(self) -> list[Measure]:
+        return measures(DANCED, self.rows)
+
+
+DANCED = BEATS | BONES | VARIETY
 
 
 def danced(stage: Stage, dancer: Dancer) -> Danced:
-    """The measures of any dancer."""
+    """The dances of any dancer to the songs of the stage."""
     made = dances(stage, dancer, TRAINED, stage.size.seeds)
-    own = rows_of(made, stage.songs.beats(TRAINED))
-    data = stage.data_rows(TRAINED)
-    bones, squares = bone_measure(made)
-    measures = [*beat_measures(own, data), bones, *variety(stage, dancer)]
-    return Danced(measures, made, own, data, squares)
+    beats = beat_rows(rows_of(made, stage.songs.beats(TRAINED)), stage.data_rows(TRAINED))
+    return Danced(made, beats | bone_rows(made) | variety(stage, dancer))
 
 
 def dancer_measures(stage: Stage, name: str) -> list[Measure]:
@@ -156,22 +162,36 @@ def dancer_measures(stage: Stage, name: str) -> list[Measure]:
     gain = []
     if "dancer-plain" in stage.weights:
         plain = dances(stage, stage.dancer("dancer-plain"), TRAINED, stage.size.seeds)
-        gain = [bone_gain(found.squares, bone_measure(plain)[1])]
-    ended = finishing_measures(found.made, dancer.bones, found.data, stage.songs.beats(TRAINED))
-    return found.measures + gain + ended + long_measures(stage, dancer, found)
+        bones = found.rows["bones"], bone_rows(plain)["bones"]
+        gain = [measure_of("bone_gain", "share", bone_gain, *bones)]
+    return [*found.measures, *gain, *finished(stage, dancer, found),
+            *long_measures(stage, dancer, found)]  # fmt: skip
+
+
+def finished(stage: Stage, dancer: Dancer, found: Danced) -> list[Measure]:
+    """Some measures of the same dances as `Dancer.dance` returns them, named finished.*"""
+    whole = np.stack(
+        [
+            [clean_up(one, FPS, body=Body.of(one, bones=dancer.bones)) for one in song]
+            for song in found.made
+        ]
+    )
+    beats = rows_of(whole, stage.songs.beats(TRAINED))
+    rows = beat_rows(beats, stage.data_rows(TRAINED)) | bone_rows(whole)
+    return [
+        replace(one, name=f"finished.{one.name}")
+        for one in measures({kind: DANCED[kind] for kind in FINISHED}, rows)
+    ]
 
 
 def long_measures(stage: Stage, dancer: Dancer, found: Danced) -> list[Measure]:
     """The alignment of dances two and four times as long as in training, and their repetition."""
-    names, measures = ("bas", "bas_shuffled"), []
-    short = [rows[name] for rows in (found.own, found.data) for name in names]
+    short, ratios = [found.rows[name] for name in SHARE], []
     for frames in LONG:
         made = dances(stage, dancer, frames, 1)
-        rows = rows_of(made, stage.songs.beats(frames)), stage.data_rows(frames)
-        measures.append(
-            longer(f"long{frames}_over_100", [row[name] for row in rows for name in names], short)
-        )
-    return measures + repeats(stage, made[0]) + floor_and_genre(stage, made[0])
+        rows = beat_rows(rows_of(made, stage.songs.beats(frames)), stage.data_rows(frames))
+        ratios.append(longer(f"long{frames}_over_100", [rows[name] for name in SHARE], short))
+    return ratios + repeats(stage, made[0]) + floor_and_genre(stage, made[0])
 
 
 def floor_and_genre(stage: Stage, made: np.ndarray) -> list[Measure]:
@@ -189,45 +209,66 @@ def repeats(stage: Stage, made: np.ndarray) -> list[Measure]:
     ]
 
 
-def variety(stage: Stage, dancer: Dancer) -> list[Measure]:
-    """The variety of dances to one piece, and the distance of all of them from the data's."""
+def variety(stage: Stage, dancer: Dancer) -> dict[str, np.ndarray]:
+    """The rows of VARIETY: dances to one piece, and the distance of all from the data's."""
     mel = stage.pieces.mel.repeat_interleave(stage.size.each, dim=0)
     made = dances_of(dancer, mel, TRAINED, seed=0).reshape(stage.pieces.truth.shape)
-    return variety_measures(features_of(made), features_of(stage.pieces.truth), stage.data_features)
+    return variety_rows(features_of(made), features_of(stage.pieces.truth), stage.data_features)
 
 
 def unheard_measures(stage: Stage) -> list[Measure]:
     """Alignment with music of a metre, a timbre and tempi that no training song has."""
     n, dancer = stage.size.songs, stage.dancer("dancer")
-    measures, shares = [], []
+    found, shares = [], []
     for k, (name, changes) in enumerate(UNHEARD.items()):
         seed = UNSEEN + 2 + k
         tempi_of_training = (
             song for song in songs(2 * n, seed, SECONDS, **changes) if not held_out(song.tempo)
         )
         made = [recorded_song(song, seed) for song in islice(tempi_of_training, n)]
-        measures += _named(name, _heard(dancer, danced_by_the_data(made, 1, TRAINED, seed))[0])
+        rows = _heard(dancer, danced_by_the_data(made, 1, TRAINED, seed))
+        found += _named(name, rows)
     for k, (name, tempi) in enumerate(TEMPI_KEPT_OUT.items()):
         seed = UNSEEN + 2 + len(UNHEARD) + k
         heard = judged_songs(n, 1, TRAINED, seed, variety=replace(JUDGED, tempi=tempi))
-        found, rows = _heard(dancer, heard)
-        measures += _named(name, found)
-        shares.append(rows)
-    return [*measures, worst_share("unheard_tempo_worst_share", shares)]
+        rows = _heard(dancer, heard)
+        found += _named(name, rows)
+        shares.append([rows[kind] for kind in SHARE])
+    return [*found, worst_share("unheard_tempo_worst_share", shares)]
 
 
-def _heard(dancer: Dancer, heard: Songs) -> tuple[list[Measure], list[np.ndarray]]:
-    """The measures of beats, and the rows of `share` behind them."""
+def _heard(dancer: Dancer, heard: Songs) -> dict[str, np.ndarray]:
+    """The rows of BEATS."""
     beats = heard.beats(TRAINED)
     made = dances_of(dancer, heard.mel, TRAINED, seed=0)
-    own, data = rows_of(made[None], beats), rows_of(heard.truth[:, 0][None], beats)
-    return beat_measures(own, data), [
-        rows[name] for rows in (own, data) for name in ("bas", "bas_shuffled")
+    return beat_rows(rows_of(made[None], beats), rows_of(heard.truth[:, 0][None], beats))
+
+
+def _named(name: str, rows: dict[str, np.ndarray]) -> list[Measure]:
+    return [replace(one, name=f"unheard.{name}.{one.name}") for one in measures(BEATS, rows)]
+
+
+@dataclass(frozen=True, eq=False)
+class Guided:
+    """A dancer that always dances with one weight of guidance; it is called as a dancer is."""
+
+    dancer: Dancer
+    weight: float
+
+    def dance_mel(
+        self, mel: Float[torch.Tensor, "B M C"], frames: int, *, generator: torch.Generator
+    ) -> Float[torch.Tensor, "B T 21 3"]:
+        return self.dancer.dance_mel(mel, frames, generator=generator, guidance=self.weight)
+
+
+def guided_records(stage: Stage, command: str) -> list[dict]:
+    """The records `dancer.guided.WEIGHT.*` of the shipped dancer: at 1 it has no guidance."""
+    found = [
+        replace(measure, name=f"{weight}.{measure.name}")
+        for weight in WEIGHTS
+        for measure in danced(stage, Guided(stage.dancer("dancer"), weight)).measures
     ]
-
-
-def _named(name: str, found: list[Measure]) -> list[Measure]:
-    return [replace(one, name=f"unheard.{name}.{one.name}") for one in found]
+    return as_records(stage, "dancer", found, "dancer.guided.", command)
 
 
 def data_records(stage: Stage, command: str) -> list[dict]:
@@ -240,12 +281,12 @@ def data_records(stage: Stage, command: str) -> list[dict]:
 def dance_records(stage: Stage, part: str, command: str) -> list[dict]:
     """The records of a part: "dancer", "dancer-plain", "regression", or "unheard"."""
     unheard = part == "unheard"
-    measures = unheard_measures(stage) if unheard else dancer_measures(stage, part)
-    return as_records(stage, DANCES[part], measures, "dancer." if unheard else f"{part}.", command)
+    found = unheard_measures(stage) if unheard else dancer_measures(stage, part)
+    return as_records(stage, DANCES[part], found, "dancer." if unheard else f"{part}.", command)
 
 
 def as_records(
-    stage: Stage, name: str, measures: list[Measure], prefix: str, command: str
+    stage: Stage, name: str, found: list[Measure], prefix: str, command: str
 ) -> list[dict]:
     """The measures of the weights of this name as records."""
     seeds = {
@@ -255,4 +296,4 @@ def as_records(
         "steps": STEPS,
     }
     seeds["weights"] = weights_digest(stage.weights[name])
-    return [measure.as_record(prefix, seeds, command) for measure in measures]
+    return [measure.as_record(prefix, seeds, command) for measure in found]

@@ -28,8 +28,7 @@ from motiondiff_edu.performers.dancer import STEPS, Dancer
 from motiondiff_edu.recipes.recordings import VARIABLE
 
 from ..walks.scores import FPS, Measure, measure_of
-from .songs import FEWEST, LONGEST
-from .trials import dances_of
+from .songs import FEWEST, LONGEST, dances_of
 
 MUSIC, BEATS = "audio", "audio_beats_machine"  # folders within the recordings
 NO_MUSIC = ("speech_libri1", "robin")  # a voice and a bird, in the same folder

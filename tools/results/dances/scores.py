@@ -17,7 +17,7 @@ from motiondiff_edu.metrics.kinetic_features import kinetic_features
 from motiondiff_edu.metrics.repetition import repeat_score
 from motiondiff_edu.metrics.skating import skating
 
-from ..walks.scores import FPS, Measure, measure_of, ratio, root_mean, squared_bone_error
+from ..walks.scores import FPS, Kind, Measure, measure_of, ratio, root_mean, squared_bone_error
 
 Beats = Sequence[Float[np.ndarray, "_"]]
 
@@ -62,32 +62,7 @@ def _music_form(dances: Float[np.ndarray, "N T J 3"], beats: Beats) -> Float[np.
     )
 
 
-def beat_measures(own: dict[str, np.ndarray], data: dict[str, np.ndarray]) -> list[Measure]:
-    """Beat alignment, with all measures that are needed to interpret it."""
-    measures = {
-        "bas": ("", np.nanmean, own["bas"]),
-        "bas_shuffled": ("", np.nanmean, own["bas_shuffled"]),
-        "bas_chance": ("", np.nanmean, own["bas_chance"]),
-        "bas_data": ("", np.nanmean, data["bas"]),
-        "bas_data_shuffled": ("", np.nanmean, data["bas_shuffled"]),
-        "bas_music": ("", np.nanmean, own["bas_music"]),
-        "bas_music_data": ("", np.nanmean, data["bas_music"]),
-        "bas_share": (
-            "ratio",
-            share,
-            own["bas"],
-            own["bas_shuffled"],
-            data["bas"],
-            data["bas_shuffled"],
-        ),
-        "beats_per_beat": ("", np.nanmean, own["beats_per_beat"]),
-        "beats_per_beat_over_data": ("ratio", ratio, own["beats_per_beat"], data["beats_per_beat"]),
-        "speed_mps": ("m/s", np.nanmean, own["speed"]),
-        "speed_over_data": ("ratio", ratio, own["speed"], data["speed"]),
-        "skating_mps": ("m/s", np.nanmean, own["skating"]),
-        "skating_data_mps": ("m/s", np.nanmean, data["skating"]),
-    }
-    return [measure_of(name, unit, value, *rows) for name, (unit, value, *rows) in measures.items()]
+SHARE = ("bas", "bas_shuffled", "data.bas", "data.bas_shuffled")
 
 
 def share(own, own_shuffled, data, data_shuffled) -> float:
@@ -95,6 +70,41 @@ def share(own, own_shuffled, data, data_shuffled) -> float:
     return (np.nanmean(own) - np.nanmean(own_shuffled)) / (
         np.nanmean(data) - np.nanmean(data_shuffled)
     )
+
+
+# of `rows_of`; those of the data are named data.*
+BEATS = {
+    "bas": Kind("", ("bas",), np.nanmean),
+    "bas_shuffled": Kind("", ("bas_shuffled",), np.nanmean),
+    "bas_chance": Kind("", ("bas_chance",), np.nanmean),
+    "bas_data": Kind("", ("data.bas",), np.nanmean),
+    "bas_data_shuffled": Kind("", ("data.bas_shuffled",), np.nanmean),
+    "bas_music": Kind("", ("bas_music",), np.nanmean),
+    "bas_music_data": Kind("", ("data.bas_music",), np.nanmean),
+    "bas_share": Kind("ratio", SHARE, share),
+    "beats_per_beat": Kind("", ("beats_per_beat",), np.nanmean),
+    "beats_per_beat_over_data": Kind("ratio", ("beats_per_beat", "data.beats_per_beat"), ratio),
+    "speed_mps": Kind("m/s", ("speed",), np.nanmean),
+    "speed_over_data": Kind("ratio", ("speed", "data.speed"), ratio),
+    "skating_mps": Kind("m/s", ("skating",), np.nanmean),
+    "skating_data_mps": Kind("m/s", ("data.skating",), np.nanmean),
+}
+BONES = {"bone_rmse_cm": Kind("cm", ("bones",), root_mean)}
+# of `variety_rows`
+VARIETY = {
+    "multimodality": Kind("", ("modes",), np.mean),
+    "multimodality_data": Kind("", ("data.modes",), np.mean),
+    "multimodality_over_data": Kind("ratio", ("modes", "data.modes"), ratio),
+    **{f"{kind}{end}": Kind("", (f"{kind}{end}",), np.mean)
+       for kind in ("fid", "diversity") for end in ("", "_data")},
+}  # fmt: skip
+
+
+def beat_rows(
+    own: dict[str, np.ndarray], data: dict[str, np.ndarray]
+) -> dict[str, Float[np.ndarray, "N"]]:
+    """The rows of BEATS: beat alignment, with all that is needed to interpret it."""
+    return own | {f"data.{name}": row for name, row in data.items()}
 
 
 def worst_share(name: str, groups: list[list[np.ndarray]]) -> Measure:
@@ -114,17 +124,14 @@ def longer(name: str, long: list[np.ndarray], short: list[np.ndarray]) -> Measur
     )
 
 
-def bone_measure(dances: Float[np.ndarray, "R N T J 3"]) -> tuple[Measure, Float[np.ndarray, "N"]]:
-    """Bone-length RMSE in cm, and the squared errors of each song behind it."""
-    squares = np.mean([squared_bone_error(one) for one in dances], axis=0)
-    return measure_of("bone_rmse_cm", "cm", root_mean, squares), squares
+def bone_rows(dances: Float[np.ndarray, "R N T J 3"]) -> dict[str, Float[np.ndarray, "N"]]:
+    """The row of BONES: squared errors of each song, cm^2, the mean over R dances."""
+    return {"bones": np.mean([squared_bone_error(one) for one in dances], axis=0)}
 
 
-def bone_gain(with_losses: Float[np.ndarray, "N"], without: Float[np.ndarray, "N"]) -> Measure:
-    """1 - RMSE with / RMSE without kinematic losses."""
-    return measure_of(
-        "bone_gain", "share", lambda a, b: 1 - root_mean(a) / root_mean(b), with_losses, without
-    )
+def bone_gain(with_losses: Float[np.ndarray, "*N"], without: Float[np.ndarray, "*N"]) -> float:
+    """1 - RMSE with / RMSE without kinematic losses, of squared errors."""
+    return 1 - root_mean(with_losses) / root_mean(without)
 
 
 def features_of(dances: Float[np.ndarray, "N K T J 3"]) -> Float[np.ndarray, "N K F"]:
@@ -132,16 +139,15 @@ def features_of(dances: Float[np.ndarray, "N K T J 3"]) -> Float[np.ndarray, "N 
     return np.stack([np.stack([kinetic_features(one) for one in row]) for row in dances])
 
 
-def variety_measures(
+def variety_rows(
     own: Float[np.ndarray, "N K F"],
     data: Float[np.ndarray, "N K F"],
     all_data: Float[np.ndarray, "P F"],
-) -> list[Measure]:
-    """MultiModality (K dances to one song), Diversity and FID.
+) -> dict[str, np.ndarray]:
+    """The rows of VARIETY: MultiModality (K dances to one song), and FID and Diversity of all.
 
-    On kinetic features normalised by `all_data`.
-
-    `fid_data`, of as many dances of the data, is a perfect dancer's FID: few clips never give 0.
+    On kinetic features normalised by `all_data`. `fid_data`, of as many dances of the data, is a
+    perfect dancer's FID: few clips never give 0.
     """
     modes, modes_data = (diversity(normalise(x, all_data)) for x in (own, data))
     pooled, pooled_data = (x.reshape(-1, x.shape[-1]) for x in (own, data))
@@ -150,22 +156,8 @@ def variety_measures(
         once = {"fid": fid(pooled, all_data), "fid_data": fid(pooled_data, all_data)}
     once |= {"diversity": diversity(normalise(pooled, all_data))}
     once |= {"diversity_data": diversity(normalise(pooled_data, all_data))}
-    return [
-        measure_of("multimodality", "", np.mean, modes),
-        measure_of("multimodality_data", "", np.mean, modes_data),
-        measure_of("multimodality_over_data", "ratio", ratio, modes, modes_data),
-        *(Measure(name, *(3 * [float(value)]), "") for name, value in once.items()),
-    ]
-
-
-def share_minus(name: str, own: list[np.ndarray], other: list[np.ndarray]) -> Measure:
-    """`share` of one dancer minus that of another, on the same songs.
-
-    Rows as `share` takes them.
-    """
-    return measure_of(
-        name, "of the data's", lambda *rows: share(*rows[:4]) - share(*rows[4:]), *own, *other
-    )
+    rows = {"modes": modes, "data.modes": modes_data}
+    return rows | {name: np.array([float(value)]) for name, value in once.items()}
 
 
 def repeat_measure(dances: Float[np.ndarray, "N T J 3"]) -> Measure:

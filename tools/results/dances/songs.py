@@ -20,6 +20,7 @@ from data_synth.music.recorded import recorded_song
 from data_synth.music.song import Song
 from data_synth.music.varied import VARIED, Variety, varied_songs
 from motiondiff_edu.conditions.music import log_mel
+from motiondiff_edu.performers.dancer import Dancer
 
 from ..walks.scores import FPS
 from ..walks.trials import UNSEEN
@@ -100,3 +101,12 @@ def dances_by_the_data(
     danced = dances_to(songs, seed * DANCES_A_SEED, draws)
     positions = np.stack([dance.positions[:frames] for _, dance in danced])
     return positions.reshape(len(songs), draws, *positions.shape[1:])
+
+
+def dances_of(
+    dancer: Dancer, mel: Float[torch.Tensor, "N M C"], frames: int, seed: int, batch: int = 25
+) -> Float[np.ndarray, "N T 21 3"]:
+    """One dance to each song; metres."""
+    draw = torch.Generator().manual_seed(seed)
+    parts = [dancer.dance_mel(part, frames, generator=draw) for part in mel.split(batch)]
+    return torch.cat(parts).double().numpy()

@@ -7,7 +7,6 @@ Source: MoFusion 4.4, and `motiondiff_edu.beyond`.  Notebook: 15
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 import torch
@@ -22,7 +21,8 @@ from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.performers.inbetweener import Inbetweener
 
-from ..walks.scores import Measure, measure_of, ratio, root_mean
+from ..sweep import Rows, Sweep, Variant, minus
+from ..walks.scores import Kind, ratio, root_mean
 from ..walks.trials import UNSEEN
 from .inbetween import InbetweenSize, middle, trials
 
@@ -49,55 +49,52 @@ def guide(denoise, schedule, given, known):
     return guided(denoise, schedule, given, known, WEIGHT)
 
 
-@dataclass(frozen=True)
-class Row:
-    """What a row is in words, how it fills in, its network, and the row that it departs from."""
-
-    words: str
-    fill: Fill
-    network: str = SHOWN
-    base: str = "ours"
+def row(words: str, fill: Fill, network: str = SHOWN, base: str = "ours") -> Variant:
+    """What a row is in words, its network and how it fills in, and the row that it departs from."""
+    return Variant(words, (network, fill), {"base": base} if base else {})
 
 
-ROWS = {
-    "ours": Row("all departures", inbetween),
-    "no-clean-up": Row("no clean-up of seams, bones and feet", Inbetweener.fill),
-    "not-shown": Row(
+VARIANTS = {
+    "ours": row("all departures", inbetween, base=""),
+    "no-clean-up": row("no clean-up of seams, bones and feet", Inbetweener.fill),
+    "not-shown": row(
         "a network that is not shown what is given", masked(guide_and_blend), NOT_SHOWN
     ),
-    "no-guidance": Row("the same, no guidance", masked(blend), NOT_SHOWN, "not-shown"),
-    "no-blending": Row("the same, no blending", masked(guide), NOT_SHOWN, "not-shown"),
-    "paper": Row("none of them: masked sampling", inpaint, NOT_SHOWN),
+    "no-guidance": row("the same, no guidance", masked(blend), NOT_SHOWN, "not-shown"),
+    "no-blending": row("the same, no blending", masked(guide), NOT_SHOWN, "not-shown"),
+    "paper": row("none of them: masked sampling", inpaint, NOT_SHOWN),
 }
+ERROR = Kind("cm", ("error",), np.mean)
+SLIDING = Kind("m/s", ("skating",), np.nanmean)
+KINDS = {
+    "error_one_cm": ERROR,
+    "seam_jump_over_data": Kind("ratio", ("seam", "seam_data"), ratio),
+    "bone_rmse_cm": Kind("cm", ("bones",), root_mean),
+    "skating_mps": SLIDING,
+}
+DIFFERENCES = {"error_one_minus_{}_cm": minus(ERROR), "skating_minus_{}_mps": minus(SLIDING)}
 
 
-def departure_records(
-    networks: dict[str, tuple[Inbetweener | Dancer, str]], size: InbetweenSize, command: str
-) -> list[dict]:
-    """The measures of every row, and those minus the row that it departs from.
-
-    `networks` has each network and the digest of its weights.
-    """
+def sweep(networks: dict[str, tuple[Inbetweener | Dancer, str]], size: InbetweenSize) -> Sweep:
+    """Nothing is trained: `networks` has each network and the digest of its weights."""
     truth, known = trials(size.motions), middle(GAP)
-    seeds = {"data": UNSEEN, "motions": size.motions, "samples": size.samples}
-    seeds |= {"steps": size.steps, "gap": GAP}
-    rows, records = {}, []
-    for name, row in ROWS.items():
-        network, weights = networks[row.network]
+
+    def measure(name: str, network: Inbetweener | Dancer, seed: int) -> Rows:
         draw = torch.Generator().manual_seed(GAP)
-        made = [
-            row.fill(
-                network, np.where(known[..., None], one, np.nan), known, samples=size.samples,
-                steps=size.steps, generator=draw,
-            )
-            for one in truth
-        ]  # fmt: skip
-        rows[name] = rows_of(np.stack(made, 1), truth, known)
-        records += [
-            one.as_record(f"inbetween-departures.{name}.", seeds | {"weights": weights}, command)
-            for one in measures_of(rows[name], rows[row.base])
-        ]
-    return records
+        how = {"samples": size.samples, "steps": size.steps, "generator": draw}
+        fill = VARIANTS[name].recipe[1]
+        holes = np.where(known[..., None], truth, np.nan)
+        made = np.stack([fill(network, one, known, **how) for one in holes], 1)
+        return rows_of(made, truth, known)
+
+    def about(name: str) -> dict:
+        found = {"data": UNSEEN, "motions": size.motions, "samples": size.samples, "gap": GAP}
+        return found | {"steps": size.steps, "weights": networks[VARIANTS[name].recipe[0]][1]}
+
+    return Sweep(
+        "inbetween-departures", VARIANTS, lambda name, seed: networks[VARIANTS[name].recipe[0]][0],
+        measure, KINDS, DIFFERENCES, about,
+    )  # fmt: skip
 
 
 def rows_of(
@@ -119,15 +116,3 @@ def rows_of(
         "bones": wrong,
         "skating": np.nanmean(sliding, 0),
     }
-
-
-def measures_of(rows: dict[str, np.ndarray], base: dict[str, np.ndarray]) -> list[Measure]:
-    """Error of a sample, jump at the seams over the data's, bone error, sliding of planted feet."""
-    return [
-        measure_of("error_one_cm", "cm", np.mean, rows["error"]),
-        measure_of("seam_jump_over_data", "ratio", ratio, rows["seam"], rows["seam_data"]),
-        measure_of("bone_rmse_cm", "cm", root_mean, rows["bones"]),
-        measure_of("skating_mps", "m/s", np.nanmean, rows["skating"]),
-        measure_of("error_one_minus_base_cm", "cm", np.mean, rows["error"] - base["error"]),
-        measure_of("skating_minus_base_mps", "m/s", np.nanmean, rows["skating"] - base["skating"]),
-    ]

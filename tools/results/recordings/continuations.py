@@ -19,19 +19,14 @@ from motiondiff_edu.metrics.seams import seam_over_motion, seam_over_past, seam_
 from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.motion.cleanup import clean_up
 from motiondiff_edu.motion.motion import Motion
-from motiondiff_edu.motion.root_frame import (
-    FPS,
-    control_from_path,
-    to_root_frame,
-)
+from motiondiff_edu.motion.root_frame import FPS, control_from_path, to_root_frame
 from motiondiff_edu.motion.skeleton import J
 from motiondiff_edu.performers.joined import Start, placed
 from motiondiff_edu.performers.performer import generators
 from motiondiff_edu.performers.walker import STEPS, Walker
 
-from ..walks.scores import Measure, measure_of, root_mean, squared_bone_error
-from .by_source import by_source
-from .windows import SECONDS, RecordedSize, amounts, recorded, trials
+from ..walks.scores import Kind, measure_of, measures, root_mean, squared_bone_error
+from .windows import SECONDS, RecordedSize, amounts, person_of, recorded, trials
 
 GIVEN = 2.0  # seconds of a window
 EARLY = 1.0  # seconds after the seam
@@ -114,30 +109,24 @@ def row_of_recording(window: Window) -> dict[str, float]:
     }
 
 
-def measures_of(rows: dict[str, np.ndarray], sources: list[str]) -> list[Measure]:
-    """The measures of all windows; intervals are over persons."""
+def high(values):
+    """The 95th percentile."""
+    return np.percentile(values, 95)
 
-    def high(values):
-        return np.percentile(values, 95)
 
-    found = {
-        "seam_over_motion": ("ratio", np.median, "seam"),
-        "seam_p95_over_motion": ("ratio", high, "seam"),
-        "seam_over_past": ("ratio", np.median, "past"),
-        "seam_p95_over_past": ("ratio", high, "past"),
-        "seam_step_cm": ("cm", np.median, "step"),
-        "seam_step_p95_cm": ("cm", high, "step"),
-        "continuation_bone_cm": ("cm", root_mean, "bone"),
-        "continuation_skating_mps": ("m/s", np.nanmean, "skating"),
-        "continuation_early_skating_mps": ("m/s", np.nanmean, "early"),
-        "continuation_adherence_mps": ("m/s", np.nanmean, "adherence"),
-        "continuation_floor_cm": ("cm", high, "depth"),
-    }
-    return [
-        by_source(name, unit, value, rows[column], np.array(sources))
-        for name, (unit, value, column) in found.items()
-        if column in rows
-    ]
+KINDS = {
+    "seam_over_motion": Kind("ratio", ("seam",), np.median),
+    "seam_p95_over_motion": Kind("ratio", ("seam",), high),
+    "seam_over_past": Kind("ratio", ("past",), np.median),
+    "seam_p95_over_past": Kind("ratio", ("past",), high),
+    "seam_step_cm": Kind("cm", ("step",), np.median),
+    "seam_step_p95_cm": Kind("cm", ("step",), high),
+    "continuation_bone_cm": Kind("cm", ("bone",), root_mean),
+    "continuation_skating_mps": Kind("m/s", ("skating",), np.nanmean),
+    "continuation_early_skating_mps": Kind("m/s", ("early",), np.nanmean),
+    "continuation_adherence_mps": Kind("m/s", ("adherence",), np.nanmean),
+    "continuation_floor_cm": Kind("cm", ("depth",), high),
+}
 
 
 def recorded_records(walker: Walker, weights: str, size: RecordedSize, command: str) -> list[dict]:
@@ -156,10 +145,12 @@ def recorded_records(walker: Walker, weights: str, size: RecordedSize, command: 
                 found.setdefault(one, []).append(row)
     seeds = {"windows": len(sources)} | amounts(sources) | {"sampling": 0, "steps": STEPS}
     seeds |= {"weights": weights}
-    records = []
+    records, persons = [], np.array([person_of(source) for source in sources])
     for prefix, rows in found.items():
         columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-        records += [m.as_record(prefix, seeds, command) for m in measures_of(columns, sources)]
+        records += [
+            one.as_record(prefix, seeds, command) for one in measures(KINDS, columns, persons)
+        ]
     jumped = np.array([row["step"] > 100 * JUMP for row in found["real.unblended."]])
     share = measure_of("blended_share", "share", np.mean, jumped)
     return [*records, share.as_record("real.", seeds, command)]

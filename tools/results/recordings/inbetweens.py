@@ -26,9 +26,9 @@ from motiondiff_edu.motion.root_frame import FPS
 from motiondiff_edu.performers.inbetweener import STEPS, Inbetweener
 from motiondiff_edu.performers.performer import generators
 
-from ..walks.scores import SKATING_FLOOR, Measure
-from .by_source import by_source
-from .windows import RecordedSize, amounts, held_out, recorded
+from ..sweep import GROUPS
+from ..walks.scores import SKATING_FLOOR, Kind, measures
+from .windows import RecordedSize, amounts, held_out, person_of, recorded
 
 SECOND = 20  # frames
 OTHERS = (5, 10, 40)  # frames between keyframes, beside one a second
@@ -101,38 +101,46 @@ def row_of(one: Filled, truth: Float[np.ndarray, "T J 3"], known: Bool[np.ndarra
     return row
 
 
-def measures_of(
-    rows: list[dict[str, float]], walks: Bool[np.ndarray, "N"], sources: list[str]
-) -> list[Measure]:
-    """The measures of all windows."""
-    columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-
-    def one(name: str, column: str, value: Callable, some: Bool[np.ndarray, "N"]) -> Measure:
-        unit = "cm" if name.endswith("_cm") else "share" if name.endswith("_share") else "ratio"
-        return by_source(name, unit, value, columns[column][some], np.array(sources)[some])
-
-    every = np.ones(len(rows), bool)
-    found = []
-    for start, column in (("inbetween_", ""), ("inbetween_raw_", "raw_")):
-        found += [
-            one(f"{start}over_interpolation", f"{column}mean", np.median, every),
-            one(f"{start}walks_over_interpolation", f"{column}mean", np.median, walks),
-            one(f"{start}others_over_interpolation", f"{column}mean", np.median, ~walks),
-            one(f"{start}one_over_interpolation", f"{column}one", np.median, every),
-            one(f"{start}one_p90_over_interpolation", f"{column}one", high, every),
-            one(f"{start}energy_over_interpolation", f"{column}energy", np.median, every),
-            one(f"{start}others_energy_over_interpolation", f"{column}energy", np.median, ~walks),
-            one(f"{start}skating_over_source", f"{column}skating", np.nanmedian, every),
-            one(f"{start}skating_p90_over_source", f"{column}skating", high, every),
-            one(f"{start}fastest_over_source", f"{column}fastest", high, every),
-            one(f"{start}floor_cm", f"{column}depth", high, every),
-        ]
-    return [*found, one("inbetween_fallback_share", "again", np.mean, every)]
-
-
 def high(values: Float[np.ndarray, "N"]) -> float:
     """The 90th percentile of the numbers among them."""
     return float(np.nanpercentile(values, 90)) if np.isfinite(values).any() else np.nan
+
+
+def _kinds() -> dict[str, Kind]:
+    found = {}
+    for start, raw in (("inbetween_", ""), ("inbetween_raw_", "raw_")):
+        for name, row, value in (
+            ("over_interpolation", "mean", np.nanmedian),
+            ("walks_over_interpolation", "mean.walks", np.nanmedian),
+            ("others_over_interpolation", "mean.others", np.nanmedian),
+            ("one_over_interpolation", "one", np.nanmedian),
+            ("one_p90_over_interpolation", "one", high),
+            ("energy_over_interpolation", "energy", np.nanmedian),
+            ("others_energy_over_interpolation", "energy.others", np.nanmedian),
+            ("skating_over_source", "skating", np.nanmedian),
+            ("skating_p90_over_source", "skating", high),
+            ("fastest_over_source", "fastest", high),
+            ("floor_cm", "depth", high),
+        ):
+            unit = "cm" if name.endswith("_cm") else "ratio"
+            found[start + name] = Kind(unit, (raw + row,), value)
+    return found | {"inbetween_fallback_share": Kind("share", ("again",), np.mean)}
+
+
+KINDS = _kinds()  # before second tries, they are named raw
+
+
+def columns(rows: list[dict[str, float]], sources: list[str]) -> dict[str, np.ndarray]:
+    """The rows of KINDS for windows of these files; those of walks and others have NaN elsewhere.
+
+    The row `group` says whose each window is.
+    """
+    found = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    walks = np.array([source.startswith(WALKS) for source in sources])
+    for name in ("mean", "energy", "raw_mean", "raw_energy"):
+        found[f"{name}.walks"] = np.where(walks, found[name], np.nan)
+        found[f"{name}.others"] = np.where(walks, np.nan, found[name])
+    return found | {GROUPS: np.array([person_of(source) for source in sources])}
 
 
 def measured_alone(task: Task) -> dict[str, float]:
@@ -157,10 +165,11 @@ def inbetween_records(
     inbetweener: Inbetweener, weights: str, size: RecordedSize, command: str, run: Run = in_turn
 ) -> list[dict]:
     """The measures of in-betweens (`real.inbetween_*`), at other distances `real.gapN.`."""
-    windows, walks = windows_and_walks(size)
+    windows = windows_of(size)
     sources = [source for source, _ in windows]
+    walks = sum(source.startswith(WALKS) for source in sources)
     seeds = {"windows": len(windows)} | amounts(sources) | {"sampling": 0, "steps": STEPS}
-    seeds |= {"samples": size.samples, "weights": weights, "walks": int(walks.sum())}
+    seeds |= {"samples": size.samples, "weights": weights, "walks": walks}
     tasks = [
         (inbetweener, motion, every, size.samples)
         for every in (SECOND, *OTHERS)
@@ -170,23 +179,14 @@ def inbetween_records(
     for every in (SECOND, *OTHERS):
         here, rows = rows[: len(windows)], rows[len(windows) :]
         prefix = "real." if every == SECOND else f"real.gap{every}."
-        found = measures_of(here, walks, sources)
+        found = columns(here, sources)
+        found = measures(KINDS, found, found[GROUPS])
         records += [one.as_record(prefix, seeds, command) for one in found]
     return records
 
 
-def windows_and_walks(
-    size: RecordedSize,
-) -> tuple[list[tuple[str, Motion]], Bool[np.ndarray, "N"]]:
-    """All windows of people whom no training has seen, by file, and which are walks."""
+def windows_of(size: RecordedSize) -> list[tuple[str, Motion]]:
+    """All windows of people whom no training has seen, each with its file."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # notes on the files
-        windows = list(recorded(held_out(), size))
-    return windows, np.array([source.startswith(WALKS) for source, _ in windows])
-
-
-def rows_of(
-    inbetweener: Inbetweener, windows: list[tuple[str, Motion]], every: int, samples: int
-) -> list[dict[str, float]]:
-    """What is measured of each window, with keyframes every so many frames."""
-    return in_turn([(inbetweener, motion, every, samples) for _, motion in windows])
+        return list(recorded(held_out(), size))

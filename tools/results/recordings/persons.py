@@ -26,7 +26,6 @@ from motiondiff_edu.performers.walker import STEPS, Walker
 
 from ..walks.scores import Measure, measure_of, ratio
 from ..walks.trials import UNSEEN
-from .by_source import by_source
 from .continuations import GIVEN, Window, windows
 from .windows import SECONDS, RecordedSize, person_of
 
@@ -68,7 +67,7 @@ def measures_of_persons(walker: Walker, found: Sequence[Window]) -> list[Measure
     synthetic = [Start.of(one[:given], one.control[given:], T_h) for one in walks]
     spreads = [spread(continuations(walker, starts, DRAWS)) for starts in (own, synthetic)]
     return [
-        by_source("style_kept", "share", np.mean, kept, np.array([one.source for one in found])),
+        measure_of("style_kept", "share", np.mean, kept, groups=np.array(persons)),
         measure_of("continuation_diversity_over_synthetic", "ratio", ratio, *spreads),
     ]
 

@@ -20,10 +20,9 @@ from motiondiff_edu.motion.skeleton import J, joint_index
 from motiondiff_edu.performers.performer import generators
 from motiondiff_edu.performers.walker import Walker
 
-from ..walks.scores import Measure
-from .by_source import by_source
+from ..walks.scores import Measure, measure_of
 from .inbetweens import WALKS
-from .windows import RecordedSize, amounts, recorded, trials
+from .windows import RecordedSize, amounts, person_of, recorded, trials
 
 LIMBS = {"arm": ARM, "leg": LEG}
 SECONDS = 3  # of a window
@@ -63,12 +62,14 @@ def row_of(walker: Walker, truth: Float[np.ndarray, "T 21 3"]) -> dict[str, floa
 def measures_of(rows: list[dict[str, float]], sources: list[str]) -> list[Measure]:
     """Errors over those of straight lines, the median over recordings: walks, and all others."""
     walks = np.array([source.startswith(WALKS) for source in sources])
+    persons = np.array([person_of(source) for source in sources])
     found = []
     for limb in LIMBS:
         over = np.array([row[f"{limb}.walker"] / row[f"{limb}.lines"] for row in rows])
         for kind, some in (("walks", walks), ("others", ~walks)):
             name = f"reconstruction_{limb}_{kind}_over_lines"
-            found.append(by_source(name, "ratio", np.median, over[some], np.array(sources)[some]))
+            chosen = np.where(some, over, np.nan)
+            found.append(measure_of(name, "ratio", np.nanmedian, chosen, groups=persons))
     return found
 
 

@@ -9,28 +9,25 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
-from motiondiff_edu._files import digest_of_tensors
 from motiondiff_edu.performers.inbetweener import STEPS, Inbetweener
 from motiondiff_edu.recipes.inbetweener import INBETWEENER, InbetweenerRecipe, train_inbetweener
 
-from ..walks.scores import Measure
-from ..words.budget import over_trainings
-from .inbetweens import SECOND, measures_of, rows_of, windows_and_walks
+from ..sweep import Sweep, Variant
+from .inbetweens import KINDS, SECOND, columns, in_turn, windows_of
 from .windows import RecordedSize
 
-# name: (what differs, in words, changes of the recipe)
-VARIANTS: dict[str, tuple[str, dict]] = {
-    "ours": ("the recipe", {}),
-    "no-recordings": ("no recordings in training", {"recordings": 0}),
-    "no-activity": (
+VARIANTS = {
+    "ours": Variant("the recipe", {}),
+    "no-recordings": Variant("no recordings in training", {"recordings": 0}),
+    "no-activity": Variant(
         "scales do not know how much the figure moves (`beyond/activity.py`)",
         {"config": replace(INBETWEENER.config, activity=False)},
     ),
-    "no-turning": (
+    "no-turning": Variant(
         "poses are seen in the heading of the first one (`beyond/turning_frame.py`)",
         {"config": replace(INBETWEENER.config, turning=False)},
     ),
-    "no-variations": (
+    "no-variations": Variant(
         "no other limbs, pelvises, upper bodies and levels, no stages; other paces for recordings "
         "alone",
         {"variations": 0.0, "levels": 0.0, "paces": 0.0, "stages": 0.0},
@@ -54,14 +51,14 @@ FULL = Budget()
 QUICK = Budget(
     (0, 1),
     RecordedSize(files=3, each=1, samples=2),
-    {"steps": 3, "motions": 2, "acts": 1, "recordings": 1, "seconds": 6.0, "save_every": 2},
+    {"steps": 3, "motions": 2, "acts": 1, "recordings": 1, "seconds": 6.0},
 )
 
 
 def recipe_of(name: str, seed: int, budget: Budget) -> InbetweenerRecipe:
     """The training of one variant with one seed."""
     settings = {"name": f"inbetween-budget.{name}", "seed": seed}
-    return replace(INBETWEENER, **settings, **budget.training | VARIANTS[name][1])
+    return replace(INBETWEENER, **settings, **budget.training | VARIANTS[name].recipe)
 
 
 def trained(name: str, seed: int, budget: Budget, runs: Path) -> Inbetweener:
@@ -74,24 +71,19 @@ def trained(name: str, seed: int, budget: Budget, runs: Path) -> Inbetweener:
     return train_inbetweener(recipe_of(name, seed, budget), run, log=partial(print, flush=True))
 
 
-def budget_records(name: str, budget: Budget, runs: Path, command: str) -> list[dict]:
-    """Train (or continue) a variant with each seed, and measure it.
+def sweep(budget: Budget, runs: Path) -> Sweep:
+    """The trainings, with a keyframe a second; intervals are over trainings and persons."""
 
-    The values are means over trainings; the intervals hold those of all trainings.
-    """
-    found, weights = [], []
-    for seed in budget.seeds:
-        inbetweener = trained(name, seed, budget, runs)
-        weights.append(digest_of_tensors(inbetweener.model.state_dict())[:16])
-        found.append(measured(inbetweener, budget.size))
-    about = {"trainings": list(budget.seeds), "trained_steps": recipe_of(name, 0, budget).steps}
-    about |= {"samples": budget.size.samples, "steps": STEPS, "weights": weights}
-    measures = over_trainings(found)
-    return [one.as_record(f"inbetween-budget.{name}.", about, command) for one in measures]
+    def measure(name: str, inbetweener: Inbetweener, seed: int) -> dict:
+        windows, samples = windows_of(budget.size), budget.size.samples
+        rows = in_turn([(inbetweener, motion, SECOND, samples) for _, motion in windows])
+        return columns(rows, [source for source, _ in windows])
 
+    def about(name: str) -> dict:
+        found = {"trained_steps": recipe_of(name, 0, budget).steps}
+        return found | {"samples": budget.size.samples, "steps": STEPS}
 
-def measured(inbetweener: Inbetweener, size: RecordedSize) -> list[Measure]:
-    """The measures of one training."""
-    windows, walks = windows_and_walks(size)
-    rows = rows_of(inbetweener, windows, SECOND, size.samples)
-    return measures_of(rows, walks, [source for source, _ in windows])
+    return Sweep(
+        "inbetween-budget", VARIANTS, lambda name, seed: trained(name, seed, budget, runs), measure,
+        KINDS, about=about, seeds=budget.seeds,
+    )  # fmt: skip

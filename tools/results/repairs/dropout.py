@@ -13,14 +13,16 @@ from pathlib import Path
 import numpy as np
 
 from motiondiff_edu.metrics.adherence import adherence
+from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.recipes.train_walker import train, training_clips
 from motiondiff_edu.recipes.walkers import MEND_PLAIN, Recipe
 
+from ..sweep import Rows, Sweep, Variant, minus
 from ..walks.parts import weights_digest
-from ..walks.scores import Measure, root_mean, squared_bone_error
+from ..walks.scores import Kind, Measure, measures_over_seeds, root_mean, squared_bone_error
 from ..walks.trials import UNSEEN, Trials
-from .trials import SHARE, continued, interval_over_seeds, names_of
+from .trials import SHARE, continued, names_of
 
 NEXT = 10  # frames
 SHARES = (0.0, 0.15, 0.3, 0.5, 0.7, 1.0)  # of the joints missing
@@ -52,60 +54,54 @@ SMALL_PAIRS = Comparison(
     tuple(names_of("plain")), tuple(names_of("dropout")), cost="pairs_dropout_cost_complete"
 )
 SHIPPED_PAIR = Comparison(("walker-plain",), ("walker",), prefix="walker_")
-MEASURES = {"bone": ("cm", root_mean), "adherence": ("mps", np.nanmean)}
+MEASURES = {  # name: (unit, the row, its mean)
+    "bone_cm": ("cm", "bone", root_mean),
+    "adherence_mps": ("m/s", "adherence", np.nanmean),
+}
+SIDES = ("plain", "dropout")
+COMPARED = {  # errors without dropout minus those with it, on incomplete pasts
+    f"dropout_gain_{name}": Kind(
+        unit,
+        tuple(f"{side}_missing_{row}" for side in SIDES),
+        minus(Kind(unit, (row,), mean)).value,
+    )
+    for name, (unit, row, mean) in MEASURES.items()
+} | {
+    f"{side}_{past}_{name}": Kind(unit, (f"{side}_{past}_{row}",), mean)
+    for past in ("complete", "missing")
+    for side in SIDES
+    for name, (unit, row, mean) in MEASURES.items()
+}
 
 
-def gains(plain: dict[str, np.ndarray], dropout: dict[str, np.ndarray]) -> list[Measure]:
-    """Errors without dropout minus those with it, on incomplete pasts; arrays (seeds, clips)."""
-    found = []
-    for kind, (unit, mean) in MEASURES.items():
-        values = interval_over_seeds(
-            lambda a, b, mean=mean: mean(a) - mean(b), plain[kind], dropout[kind]
-        )
-        found.append(
-            Measure(f"dropout_gain_{kind}_{unit}", *values, "cm" if unit == "cm" else "m/s")
-        )
-    return found
+def larger(*parts: np.ndarray) -> float:
+    """The larger of the ratios of bone and control error: with dropout over without."""
+    return max(
+        mean(parts[2 * k + 1]) / mean(parts[2 * k])
+        for k, (_, _, mean) in enumerate(MEASURES.values())
+    )
 
 
-def cost(name: str, plain: dict[str, np.ndarray], dropout: dict[str, np.ndarray]) -> Measure:
-    """Errors with dropout over those without, on complete pasts: the larger of the two ratios."""
-
-    def larger(*parts: np.ndarray) -> float:
-        pairs = zip(MEASURES.values(), (parts[:2], parts[2:]), strict=True)
-        return max(mean(b) / mean(a) for (_, mean), (a, b) in pairs)
-
-    arrays = [both[kind] for kind in MEASURES for both in (plain, dropout)]
-    return Measure(name, *interval_over_seeds(larger, *arrays), "ratio")
+COMPLETE = tuple(f"{side}_complete_{row}" for _, row, _ in MEASURES.values() for side in SIDES)
+COST = Kind("ratio", COMPLETE, larger)
 
 
 def measured(walkers: list, trials: Trials, share: float) -> dict[str, np.ndarray]:
     """`rows` of several walkers, (seeds, clips); each draws with the same seed."""
     each = [rows(continued(walker, trials, share, NEXT), trials) for walker in walkers]
-    return {kind: np.stack([one[kind] for one in each]) for kind in MEASURES}
+    return {row: np.stack([one[row] for one in each]) for row in each[0]}
 
 
 def dropout_measures(pairs: Comparison, trials: Trials, weights: dict[str, Path]) -> list[Measure]:
-    """Gains, cost, and the errors of both kinds with and without faults."""
-    walkers = {
-        kind: [checkpoints.load_walker(weights[name]) for name in names]
-        for kind, names in (("plain", pairs.plain), ("dropout", pairs.dropout))
-    }
-    whole, broken = (
-        {k: measured(w, trials, share) for k, w in walkers.items()} for share in (0.0, SHARE)
-    )
-    found = [*gains(broken["plain"], broken["dropout"])]
-    for words, both in (("complete", whole), ("missing", broken)):
-        for kind, arrays in both.items():
-            for what, (unit, mean) in MEASURES.items():
-                values = interval_over_seeds(mean, arrays[what])
-                found.append(
-                    Measure(
-                        f"{kind}_{words}_{what}_{unit}", *values, "cm" if unit == "cm" else "m/s"
-                    )
-                )
-    found = [replace(measure, name=f"{pairs.prefix}{measure.name}") for measure in found]
-    return [*found, cost(pairs.cost, whole["plain"], whole["dropout"])]
+    """Gains, the errors of both sides with and without faults, and the cost."""
+    found = {}
+    for side, names in (("plain", pairs.plain), ("dropout", pairs.dropout)):
+        walkers = [checkpoints.load_walker(weights[name]) for name in names]
+        for past, share in (("complete", 0.0), ("missing", SHARE)):
+            made = measured(walkers, trials, share)
+            found |= {f"{side}_{past}_{row}": values for row, values in made.items()}
+    kinds = {f"{pairs.prefix}{name}": kind for name, kind in COMPARED.items()} | {pairs.cost: COST}
+    return measures_over_seeds(kinds, found)
 
 
 def dropout_records(
@@ -133,24 +129,31 @@ class MapBudget:
 
     steps: int = 4000
     clips: int = 200
-    save_every: int = 200
 
 
 MAP_FULL = MapBudget()
-MAP_QUICK = MapBudget(steps=3, clips=2, save_every=2)
+MAP_QUICK = MapBudget(steps=3, clips=12)
 
 
-def map_recipe(name: str, budget: MapBudget) -> Recipe:
+VARIANTS = {
+    name: Variant("no dropout" if rate == 0 else f"a rate of {rate:.0%}", rate)
+    for name, rate in RATES.items()
+}
+KINDS = {
+    f"missing-{round(100 * share)}.{name}": Kind(unit, (f"{row}-{round(100 * share)}",), mean)
+    for share in SHARES
+    for name, (unit, row, mean) in MEASURES.items()
+}
+
+
+def map_recipe(name: str, budget: MapBudget, seed: int = 0) -> Recipe:
     """The recipe of a walker with one constant rate of dropout."""
-    rate = RATES[name]
-    sizes = {"steps": budget.steps, "clips": budget.clips, "save_every": budget.save_every}
+    rate = VARIANTS[name].recipe
     return replace(
-        MEND_PLAIN,
-        name=f"mend-map.{name}",
-        dropout=(rate,) if rate else (),
-        dropout_start=0.0,
-        **sizes,
-    )
+        MEND_PLAIN, name=f"mend-map.{name}", seed=seed,
+        dropout=(rate,) if rate else (), dropout_start=0.0,
+        steps=budget.steps, clips=budget.clips,
+    )  # fmt: skip
 
 
 @cache
@@ -158,34 +161,25 @@ def _clips(budget: MapBudget):
     return training_clips(map_recipe("00", budget))
 
 
-def map_records(
-    name: str, budget: MapBudget, trials: Trials, runs: Path, command: str
-) -> list[dict]:
-    """Train (or continue) the walker of one rate.
+def sweep(budget: MapBudget, runs: Path, trials: Trials) -> Sweep:
+    """A walker for each rate, measured for every share of missing joints."""
 
-    It is measured for every share of missing joints.
-    """
-    runs.mkdir(parents=True, exist_ok=True)
-    recipe = map_recipe(name, budget)
-    walker = train(recipe, runs / f"{name}.safetensors", _clips(budget))
-    seeds = {
-        "data": UNSEEN,
-        "clips": len(trials.past),
-        "frames": NEXT,
-        "rollouts": 0,
-        "training": recipe.seed,
-    }
-    seeds |= {"trained_steps": budget.steps, "trained_clips": budget.clips}
-    found = []
-    for share in SHARES:
-        one = measured([walker], trials, share)
-        for what, (unit, mean) in MEASURES.items():
-            values = interval_over_seeds(mean, one[what])
-            found.append(
-                Measure(
-                    f"missing-{round(100 * share)}.{what}_{unit}",
-                    *values,
-                    "cm" if unit == "cm" else "m/s",
-                )
-            )
-    return [measure.as_record(f"mend-map.{name}.", seeds, command) for measure in found]
+    def trained(name: str, seed: int) -> Walker:
+        runs.mkdir(parents=True, exist_ok=True)
+        return train(
+            map_recipe(name, budget, seed), runs / f"{name}-{seed}.safetensors", _clips(budget)
+        )
+
+    def measure(name: str, walker: Walker, seed: int) -> Rows:
+        found = {share: measured([walker], trials, share) for share in SHARES}
+        return {
+            f"{row}-{round(100 * share)}": values[0]
+            for share, one in found.items()
+            for row, values in one.items()
+        }
+
+    def about(name: str) -> dict:
+        found = {"data": UNSEEN, "clips": len(trials.past), "frames": NEXT, "rollouts": 0}
+        return found | {"trained_steps": budget.steps, "trained_clips": budget.clips}
+
+    return Sweep("mend-map", VARIANTS, trained, measure, KINDS, about=about)

@@ -17,11 +17,12 @@ from motiondiff_edu.editing.repairs import with_bones
 from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.reconstruction import Rollout, Stop, WayBack, plain_way_back
 
+from ..intervals import interval_over_seeds
 from ..walks import steps_table
 from ..walks.scores import Measure, measure_of, root_mean, squared_bone_error
 from ..walks.trials import Trials
 from .rivals import rivals
-from .trials import SHARE, as_given, continued, interval_over_seeds, without
+from .trials import SHARE, as_given, continued, without
 
 Past = Float[np.ndarray, "N T_h J 3"]
 FAULTS: dict[str, Callable[[Past], Imperfect]] = {

@@ -3,8 +3,6 @@
 They are unseen pasts with known faults; walkers get zero after standardisation for missing joints.
 """
 
-from collections.abc import Callable
-
 import numpy as np
 import torch
 from jaxtyping import Bool, Float
@@ -13,7 +11,6 @@ from data_synth.imperfect import Imperfect, random_joints
 from motiondiff_edu import rollout
 from motiondiff_edu.performers.walker import Walker
 
-from ..intervals import DRAWS
 from ..walks.trials import Trials
 
 SHARE = 0.3  # of the joints, missing throughout: MoDiff's Table II
@@ -65,22 +62,3 @@ def continued(
     control = torch.from_numpy(trials.control[:, : past.shape[1] + frames]).float()
     made = rollout.generate(walker, past, control, seed=seed, steps=steps, keep=keep)
     return made.unflatten(-1, (-1, 3)).double().numpy()
-
-
-def interval_over_seeds(
-    value_of: Callable[..., float], *rows: Float[np.ndarray, "K N *any"], draws: int = DRAWS
-) -> tuple[float, float, float]:
-    """`value_of` of the rows with its 95 % bootstrap interval.
-
-    Training seeds and clips are both drawn with replacement.
-
-    Arrays have a row for each training seed and a column for each clip; the same draw is used for
-    all arrays.
-    """
-    rng, (K, N) = np.random.default_rng(0), rows[0].shape[:2]
-    values = []
-    for _ in range(draws):
-        chosen = np.ix_(rng.integers(K, size=K), rng.integers(N, size=N))
-        values.append(value_of(*(x[chosen] for x in rows)))
-    low, high = np.nanpercentile(values, [2.5, 97.5])
-    return float(value_of(*rows)), float(low), float(high)

@@ -6,7 +6,7 @@ Each part is a list of records and one JSON file.
 import hashlib
 import json
 from dataclasses import asdict, dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +14,7 @@ from safetensors import safe_open
 
 from motiondiff_edu._files import replacing
 from motiondiff_edu.metrics.footsteps import PAPER, ROBUST
+from motiondiff_edu.modiff import MoDiffConfig
 from motiondiff_edu.pretrained import checkpoints
 
 from . import steps_table
@@ -36,14 +37,6 @@ ROLLING = (
     "pretrained/eight_bits.py",
     "pretrained/weights_file.py",
 )
-# the rows of Table I that our walkers stand beside
-PAPER_ROWS = {
-    "data": "Recorded data",
-    "walker": "MoDiff (drop)",
-    "walker-plain": "MoDiff (no drop)",
-    "walker-printed": "MoDiff (drop)",
-    "walker-eps": "MoDiff (no drop)",
-}
 
 
 @dataclass(frozen=True)
@@ -123,7 +116,7 @@ def code_digest() -> str:
 
     When it changes, old rollouts are not used.
     """
-    files = [PACKAGE / name for name in ROLLING] + sorted((PACKAGE / "fast").glob("*.py"))
+    files = [PACKAGE / name for name in ROLLING]
     return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()[:16]
 
 
@@ -162,6 +155,13 @@ LINES = {
 }
 
 
+def size_of_network(config: MoDiffConfig) -> str:
+    """Width, feed-forward and layers of MoDiff: motion, control, cross-modal, decoder."""
+    layers = config.motion_layers, config.control_layers, config.cross_layers, config.decoder_layers
+    named = "/".join(map(str, layers))
+    return f"width {config.width}, feed-forward {config.hidden}, layers {named}"
+
+
 def kept_records(folder: Path, name: str) -> list[dict]:
     """The records of a part; none if it was not measured yet."""
     kept = folder / f"{name}.json"
@@ -189,20 +189,21 @@ def as_record(
     else:
         seeds |= {"data": UNSEEN, "clips": size.clips, "seconds": size.seconds}
     if line:
-        seeds |= {"weights": weights_digest(bench.weights[line.name]), "steps": line.steps or "all"}
-    return measure.as_record(prefix, seeds, command, _paper_bones(prefix + measure.name))
+        seeds |= _about_weights(bench.weights[line.name]) | {"steps": line.steps or "all"}
+    return measure.as_record(prefix, seeds, command)
 
 
-def _paper_bones(name: str) -> float | None:
-    """Table I's bone RMSE for a record of ours."""
-    who, _, what = name.partition(".")
-    row = PAPER_ROWS.get(who)
-    return steps_table.PAPER_TABLE[row][-1] if row and what == "bone_rmse_cm" else None
+@cache
+def _about_weights(path: Path) -> dict:
+    """The digest of a walker's weights, the size of its network, and how long it was trained."""
+    walker = checkpoints.load_walker(path)
+    recipe = walker.card.get("recipe", {})
+    about = {"weights": weights_digest(path), "network": size_of_network(walker.config)}
+    return about | {"trained_steps": recipe.get("steps"), "rate": recipe.get("lr")}
 
 
 def footstep_records(bench: Bench, command: str) -> tuple[list[dict], dict[str, np.ndarray]]:
-    """Table I on our data: the recorded walks and every line of walkers; and the curves of Fig.
-    3."""
+    """Table I on our data: the recorded walks and all walkers; and the curves of Fig. 3."""
     sets = {"data": (None, bench.trials.truth)}
     for line in LINES.values():
         if line.name in bench.weights and line.hold:
@@ -217,13 +218,4 @@ def footstep_records(bench: Bench, command: str) -> tuple[list[dict], dict[str, 
                 as_record(f"footsteps{suffix}.{name}.", measure, bench, line, command)
                 for measure in found
             ]
-    for one in records:
-        one["paper"] = _paper_measure(one["name"])
     return records, curves
-
-
-def _paper_measure(name: str) -> float | None:
-    kind, who, what = name.split(".")
-    row = PAPER_ROWS.get(who)
-    column = ("f_est", "v95_cmps", "mean_s", "std_s").index(what)
-    return steps_table.PAPER_TABLE[row][column] if row and kind == "footsteps" else None

@@ -5,8 +5,7 @@ Names, values, units.
 `score` takes arrays, so it can also score the data themselves.
 """
 
-import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +17,7 @@ from motiondiff_edu.metrics.diversity import spread
 from motiondiff_edu.metrics.skating import planted_share, skating
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS
 
-from ..intervals import interval
+from ..intervals import interval, interval_over_seeds
 
 FPS = 20
 SKATING_FLOOR = 0.02  # m/s: this is used for data that slide less
@@ -35,21 +34,50 @@ class Measure:
     high: float
     unit: str
 
-    def as_record(self, prefix: str, seeds: dict, command: str, paper: float | None = None) -> dict:
+    def as_record(self, prefix: str, seeds: dict, command: str) -> dict:
         """The record for docs/results: five digits, None for NaN."""
         value, low, high = (
             float(f"{x:.5g}") if np.isfinite(x) else None for x in (self.value, self.low, self.high)
         )
-        return dict(
-            name=prefix + self.name,
-            value=value,
-            low=low,
-            high=high,
-            seeds=seeds,
-            unit=self.unit,
-            paper=paper,
-            command=command,
+        name, about = prefix + self.name, {"unit": self.unit, "paper": None, "command": command}
+        return dict(name=name, value=value, low=low, high=high, seeds=seeds) | about
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A measure: its unit, the rows that it is computed from, and the function of them."""
+
+    unit: str
+    rows: tuple[str, ...]
+    value: Callable[..., float]
+
+
+def measures(
+    kinds: Mapping[str, Kind], rows: Mapping[str, np.ndarray], groups: np.ndarray | None = None
+) -> list[Measure]:
+    """The measures of rows that have a number for each clip, with intervals over clips or groups.
+
+    Those whose rows are not there are left out.
+    """
+    return [
+        measure_of(name, kind.unit, kind.value, *(rows[key] for key in kind.rows), groups=groups)
+        for name, kind in kinds.items()
+        if set(kind.rows) <= set(rows)
+    ]
+
+
+def measures_over_seeds(
+    kinds: Mapping[str, Kind], rows: Mapping[str, np.ndarray], groups: np.ndarray | None = None
+) -> list[Measure]:
+    """The same for rows of several trainings, (seeds, clips): intervals are over both."""
+    return [
+        Measure(
+            name,
+            *interval_over_seeds(kind.value, *(rows[key] for key in kind.rows), groups=groups),
+            kind.unit,
         )
+        for name, kind in kinds.items()
+    ]
 
 
 def squared_bone_error(poses: Float[np.ndarray, "N T J 3"]) -> Float[np.ndarray, "N"]:
@@ -78,57 +106,40 @@ def score(
     truth: Float[np.ndarray, "N n J 3"],
 ) -> list[Measure]:
     """The measures of `poses` generated under `control`, and those of the data's own `truth`."""
-    own, data = adherence(poses, control), adherence(truth, control)
-    slide, slide_data = skating(poses, control), skating(truth, control)
-    first, last = slice(None, EDGE), slice(-EDGE, None)
-    bones = [squared_bone_error(poses[:, part]) for part in (first, last)]
-    kept = [adherence(poses[:, part], control[:, part]) for part in (first, last)]
-    measures = {
-        "bone_rmse_cm": ("cm", root_mean, squared_bone_error(poses)),
-        "bone_rmse_within_clip_cm": ("cm", root_mean, squared_stretch(poses)),
-        "bone_rmse_data_cm": ("cm", root_mean, squared_bone_error(truth)),
-        "adherence_mps": ("m/s", np.nanmean, own),
-        "adherence_data_mps": ("m/s", np.nanmean, data),
-        "adherence_excess_mps": ("m/s", _difference, own, data),
-        "adherence_shuffled_over_own": ("ratio", ratio, shuffled_adherence(poses, control), own),
-        "drift_bone_ratio": ("ratio", lambda a, b: root_mean(a) / root_mean(b), bones[1], bones[0]),
-        "drift_adherence_ratio": ("ratio", ratio, kept[1], kept[0]),
-        "drift_ratio": ("ratio", _larger, *bones, *kept),
-        "skating_mps": ("m/s", np.nanmean, slide),
-        "skating_data_mps": ("m/s", np.nanmean, slide_data),
-        "skating_over_data": ("ratio", over_floor, slide, slide_data),
-        "planted_share": ("share", np.nanmean, planted_share(poses)),
-        "planted_share_data": ("share", np.nanmean, planted_share(truth)),
+    rows = {
+        "bones": squared_bone_error(poses),
+        "stretch": squared_stretch(poses),
+        "bones_data": squared_bone_error(truth),
+        "own": adherence(poses, control),
+        "data": adherence(truth, control),
+        "shuffled": shuffled_adherence(poses, control),
+        "slide": skating(poses, control),
+        "slide_data": skating(truth, control),
+        "planted": planted_share(poses),
+        "planted_data": planted_share(truth),
     }
-    return [measure_of(name, unit, value, *rows) for name, (unit, value, *rows) in measures.items()]
+    for name, part in (("first", slice(None, EDGE)), ("last", slice(-EDGE, None))):
+        rows[f"bones_{name}"] = squared_bone_error(poses[:, part])
+        rows[f"own_{name}"] = adherence(poses[:, part], control[:, part])
+    return measures(WALKS, rows)
 
 
 def diversity(
     rollouts: Float[np.ndarray, "P n T J 3"], drawn: Float[np.ndarray, "P n T J 3"]
 ) -> list[Measure]:
-    """Spread of the rollouts, of the data's continuations, and their ratio.
-
-    The interval is over pasts.
-    """
-    own, data = spread(rollouts), spread(drawn)
-    return [
-        measure_of("diversity_m", "m", np.mean, own),
-        measure_of("diversity_data_m", "m", np.mean, data),
-        measure_of("diversity_over_data", "ratio", ratio, own, data),
-        measure_of("diversity_over_data_median", "ratio", lambda a, b: np.median(a / b), own, data),
-    ]
+    """Spread of the rollouts, of the data's continuations, and their ratio, over pasts."""
+    return measures(DIVERSITY, {"own": spread(rollouts), "data": spread(drawn)})
 
 
-def measure_of(name: str, unit: str, value: Callable[..., float], *rows: np.ndarray) -> Measure:
-    """The number `value(*rows)` with its interval over the rows.
-
-    It is NaN, without a warning, when there is no number.
-    """
-    with warnings.catch_warnings():
-        warnings.simplefilter(
-            "ignore", RuntimeWarning
-        )  # the mean of no numbers is NaN, and is shown as NaN
-        return Measure(name, *interval(value, *rows), unit)
+def measure_of(
+    name: str,
+    unit: str,
+    value: Callable[..., float],
+    *rows: np.ndarray,
+    groups: np.ndarray | None = None,
+) -> Measure:
+    """The number `value(*rows)` with its interval over the rows; NaN when there is none."""
+    return Measure(name, *interval(value, *rows, groups=groups), unit)
 
 
 def root_mean(squares: Float[np.ndarray, "N"]) -> float:
@@ -136,13 +147,14 @@ def root_mean(squares: Float[np.ndarray, "N"]) -> float:
     return np.sqrt(squares.mean())
 
 
+def ratio_of_roots(over: Float[np.ndarray, "N"], under: Float[np.ndarray, "N"]) -> float:
+    """RMSE over RMSE, of squared errors."""
+    return root_mean(over) / root_mean(under)
+
+
 def ratio(over: Float[np.ndarray, "N"], under: Float[np.ndarray, "N"]) -> float:
     """Mean divided by mean (not the mean of ratios); each leaves out clips without a number."""
     return np.nanmean(over) / np.nanmean(under)
-
-
-def _difference(own, data):
-    return np.nanmean(own) - np.nanmean(data)
 
 
 def over_floor(own: Float[np.ndarray, "N"], data: Float[np.ndarray, "N"]) -> float:
@@ -150,7 +162,32 @@ def over_floor(own: Float[np.ndarray, "N"], data: Float[np.ndarray, "N"]) -> flo
     return np.nanmean(own) / max(np.nanmean(data), SKATING_FLOOR)
 
 
-def _larger(bones_first, bones_last, adherence_first, adherence_last):
-    return max(
-        root_mean(bones_last) / root_mean(bones_first), ratio(adherence_last, adherence_first)
-    )
+WALKS = {
+    "bone_rmse_cm": Kind("cm", ("bones",), root_mean),
+    "bone_rmse_within_clip_cm": Kind("cm", ("stretch",), root_mean),
+    "bone_rmse_data_cm": Kind("cm", ("bones_data",), root_mean),
+    "adherence_mps": Kind("m/s", ("own",), np.nanmean),
+    "adherence_data_mps": Kind("m/s", ("data",), np.nanmean),
+    "adherence_excess_mps": Kind(
+        "m/s", ("own", "data"), lambda own, data: np.nanmean(own) - np.nanmean(data)
+    ),
+    "adherence_shuffled_over_own": Kind("ratio", ("shuffled", "own"), ratio),
+    "drift_bone_ratio": Kind("ratio", ("bones_last", "bones_first"), ratio_of_roots),
+    "drift_adherence_ratio": Kind("ratio", ("own_last", "own_first"), ratio),
+    "drift_ratio": Kind(
+        "ratio",
+        ("bones_last", "bones_first", "own_last", "own_first"),
+        lambda a, b, c, d: max(ratio_of_roots(a, b), ratio(c, d)),
+    ),
+    "skating_mps": Kind("m/s", ("slide",), np.nanmean),
+    "skating_data_mps": Kind("m/s", ("slide_data",), np.nanmean),
+    "skating_over_data": Kind("ratio", ("slide", "slide_data"), over_floor),
+    "planted_share": Kind("share", ("planted",), np.nanmean),
+    "planted_share_data": Kind("share", ("planted_data",), np.nanmean),
+}
+DIVERSITY = {
+    "diversity_m": Kind("m", ("own",), np.mean),
+    "diversity_data_m": Kind("m", ("data",), np.mean),
+    "diversity_over_data": Kind("ratio", ("own", "data"), ratio),
+    "diversity_over_data_median": Kind("ratio", ("own", "data"), lambda a, b: np.median(a / b)),
+}

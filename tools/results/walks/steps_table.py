@@ -13,18 +13,6 @@ from motiondiff_edu.metrics.footsteps import PAPER, TOLERANCES, StepRule, heel_s
 
 from .scores import Measure, measure_of
 
-# f_est, v95 (cm/s), mean and std of step duration (s), bone RMSE (cm): MoDiff Table I, Edinburgh,
-# CMU and HDM05 data
-PAPER_TABLE = {
-    "Recorded data": (289, 5, 0.315, 0.263, 0),
-    "MoGlow (no drop)": (314, 6, 0.222, 0.134, 0.315),
-    "MoGlow (drop)": (253, 5, 0.341, 0.250, 0.250),
-    "TimeGrad (no drop)": (284, 6, 0.331, 0.338, 0.124),
-    "TimeGrad (drop)": (281, 5, 0.289, 0.241, 0.115),
-    "MoDiff (no drop)": (280, 5, 0.289, 0.239, 0.089),
-    "MoDiff (drop)": (284, 5, 0.334, 0.286, 0.072),
-}
-
 
 def tables(
     poses: Float[np.ndarray, "N T J 3"], control: Float[np.ndarray, "N T 3"], rule: StepRule = PAPER

@@ -10,26 +10,28 @@ Source: MoFusion 3; choices are ours
 """
 
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
 
-from motiondiff_edu._files import digest_of_tensors
+from data_synth.actions.neighbours import KINDS as PAIRS
 from motiondiff_edu.baselines.text import BagConfig, RegressionConfig
+from motiondiff_edu.metrics import sentences
 from motiondiff_edu.metrics.actions import actions
-from motiondiff_edu.metrics.sentences import KINDS, rows_of
+from motiondiff_edu.metrics.sentences import KINDS as RECOGNISED
 from motiondiff_edu.motion import moving_frame
 from motiondiff_edu.performers.mover import Mover
+from motiondiff_edu.pretrained.judges import judges
 from motiondiff_edu.recipes.dancers import DanceLossWeights
 from motiondiff_edu.recipes.movers import MOVER, MoverRecipe
 from motiondiff_edu.recipes.train_mover import train_mover
 
-from ..repairs.trials import interval_over_seeds
-from ..walks.scores import Measure, ratio, root_mean, squared_bone_error
+from ..sweep import Sweep, Variant
+from ..walks.scores import Kind, ratio, root_mean, squared_bone_error
 from .rows import STEPS, performed
-from .scores import Panel, by_trial, nearer, retrieved, sliding
-from .trials import UNSEEN, Positions
+from .scores import RETRIEVED, Panel, by_trial, nearer, retrieved, sliding
+from .trials import UNSEEN, Positions, unseen
 
 SIZES = replace(MOVER.config, widths=(48, 48, 64), plan_widths=(24, 24, 32))
 SMALL = replace(MOVER, config=SIZES, steps=2400, plan_steps=0, frames=1024)
@@ -41,17 +43,16 @@ def network_of(config: type) -> dict:
     return {"config": config(**vars(ALONE))}
 
 
-# name: (what differs, in words, changes of the recipe)
-VARIANTS: dict[str, tuple[str, dict]] = {
-    "ours": ("the mover's recipe", {}),
-    "no-timeline": ("no timeline", {"config": ALONE}),
-    "no-kinematic": ("no kinematic losses", {"kinematic": None}),
-    "shallow": ("no further layers in the middle", {"config": replace(SIZES, depth=0)}),
-    "columns-alike": ("all columns alike, without weights by their spread", {"metres": 0.0}),
-    "plain-loss": ("errors of poses alone", {"loss_weights": DanceLossWeights()}),
-    "cosine": ("the cosine schedule as it is", {"snr": 1.0}),
-    "bag": ("no timeline, a bag of words", network_of(BagConfig)),
-    "regression": ("no timeline, no noise: regression", network_of(RegressionConfig)),
+VARIANTS = {
+    "ours": Variant("the mover's recipe", {}),
+    "no-timeline": Variant("no timeline", {"config": ALONE}),
+    "no-kinematic": Variant("no kinematic losses", {"kinematic": None}),
+    "shallow": Variant("no further layers in the middle", {"config": replace(SIZES, depth=0)}),
+    "columns-alike": Variant("all columns alike, without weights by their spread", {"metres": 0.0}),
+    "plain-loss": Variant("errors of poses alone", {"loss_weights": DanceLossWeights()}),
+    "cosine": Variant("the cosine schedule as it is", {"snr": 1.0}),
+    "bag": Variant("no timeline, a bag of words", network_of(BagConfig)),
+    "regression": Variant("no timeline, no noise: regression", network_of(RegressionConfig)),
 }
 
 
@@ -65,13 +66,13 @@ class Budget:
 
 
 FULL = Budget()
-QUICK = Budget((0, 1), 40, {"steps": 3, "clips": 12, "frames": 300, "save_every": 2})
+QUICK = Budget((0, 1), 40, {"steps": 3, "clips": 12, "frames": 300})
 
 
 def recipe_of(name: str, seed: int, budget: Budget) -> MoverRecipe:
     """The training of one variant with one seed."""
     settings = {"name": f"words-budget.{name}", "seed": seed}
-    return replace(SMALL, **settings, **budget.training, **VARIANTS[name][1])
+    return replace(SMALL, **settings, **budget.training, **VARIANTS[name].recipe)
 
 
 def trained(name: str, seed: int, budget: Budget, runs: Path) -> Mover:
@@ -84,47 +85,41 @@ def trained(name: str, seed: int, budget: Budget, runs: Path) -> Mover:
     return train_mover(recipe_of(name, seed, budget), run, log=partial(print, flush=True))
 
 
-def budget_records(name: str, budget: Budget, panel: Panel, runs: Path, command: str) -> list[dict]:
-    """Train (or continue) a variant with each seed, and measure it; the intervals hold both."""
-    made, weights = [], []
-    for seed in budget.seeds:
-        mover = trained(name, seed, budget, runs)
-        weights.append(digest_of_tensors(mover.model.state_dict())[:16])
-        made.append(performed(mover)(panel.trials, seed))
-    about = {"data": UNSEEN, "trials": budget.trials, "trainings": list(budget.seeds)}
-    about |= {"trained_steps": recipe_of(name, 0, budget).steps, "steps": STEPS}
-    about |= {"weights": weights}
-    measures = measured(panel, made)
-    return [one.as_record(f"words-budget.{name}.", about, command) for one in measures]
+KINDS = {f"{kind}_accuracy": Kind("share", (kind,), np.nanmean) for kind in RECOGNISED}
+KINDS |= {
+    f"minimal_pair{kind}": Kind("share", (f"right{kind}", f"pairs{kind}"), ratio)
+    for kind in ("", *(f".{one}" for one in PAIRS))
+}
+KINDS |= {
+    "bone_rmse_cm": Kind("cm", ("bones",), root_mean),
+    "skating_mps": Kind("m/s", ("sliding",), np.nanmean),
+}
+KINDS |= {name: Kind(unit, (name,), np.mean) for name, unit in RETRIEVED.items()}
 
 
-def measured(panel: Panel, made: list[list[Positions]]) -> list[Measure]:
-    """The measures of several trainings; made[seed][trial]."""
-    points = [panel.row(one) for one in made]
-    agreed = [rows_of(panel.trials.phrases, [actions(x) for x in one]) for one in made]
-    near = [by_trial(panel, nearer(panel, row)) for row in points]
-    rows = {f"{kind}_accuracy": np.stack([one[kind] for one in agreed]) for kind in KINDS}
-    found = [
-        Measure(key, *interval_over_seeds(np.nanmean, row), "share") for key, row in rows.items()
-    ]
-    for name in near[0]:
-        both = (np.stack([one[name][part] for one in near]) for part in (0, 1))
-        found.append(Measure(f"minimal_pair{name}", *interval_over_seeds(ratio, *both), "share"))
-    bones = np.array([[squared_bone_error(x[None])[0] for x in one] for one in made])
-    slides = np.array([[sliding(x) for x in one] for one in made])
-    found.append(Measure("bone_rmse_cm", *interval_over_seeds(root_mean, bones), "cm"))
-    found.append(Measure("skating_mps", *interval_over_seeds(np.nanmean, slides), "m/s"))
-    return found + over_trainings([retrieved(panel, row) for row in points])
+def rows_of(panel: Panel, made: list[Positions]) -> dict[str, np.ndarray]:
+    """The rows of KINDS of one training: a number for each trial, or one for all of them."""
+    points = panel.row(made)
+    rows = dict(sentences.rows_of(panel.trials.phrases, [actions(x) for x in made]))
+    for kind, (right, there) in by_trial(panel, nearer(panel, points)).items():
+        rows |= {f"right{kind}": right, f"pairs{kind}": there}
+    rows["bones"] = np.array([squared_bone_error(x[None])[0] for x in made])
+    rows["sliding"] = np.array([sliding(x) for x in made])
+    return rows | {one.name: np.array([one.value]) for one in retrieved(panel, points)}
 
 
-def over_trainings(each: list[list[Measure]]) -> list[Measure]:
-    """The mean of each measure, from the least to the largest interval's end."""
-    return [
-        replace(
-            same[0],
-            value=float(np.mean([one.value for one in same])),
-            low=min(one.low for one in same),
-            high=max(one.high for one in same),
-        )
-        for same in zip(*each, strict=True)
-    ]
+def sweep(budget: Budget, runs: Path, panel: Panel | None = None) -> Sweep:
+    """The movers; `panel` is that of `budget.trials` captions, made where it is first needed."""
+    judged = cache(lambda: panel or Panel(judges(), unseen(budget.trials)))
+
+    def measure(name: str, mover: Mover, seed: int) -> dict[str, np.ndarray]:
+        return rows_of(judged(), performed(mover)(judged().trials, seed))
+
+    def about(name: str) -> dict:
+        found = {"data": UNSEEN, "trials": budget.trials, "steps": STEPS}
+        return found | {"trained_steps": recipe_of(name, 0, budget).steps}
+
+    return Sweep(
+        "words-budget", VARIANTS, lambda name, seed: trained(name, seed, budget, runs), measure,
+        KINDS, about=about, seeds=budget.seeds,
+    )  # fmt: skip

@@ -226,9 +226,7 @@ def _alone(part: Part, studio: Studio) -> Found:
 
 
 def word_records(
-    studio: Studio,
-    command: str,
-    run: Callable[[Sequence[Part], Studio], list[Found]] = in_turn,
+    studio: Studio, command: str, run: Callable[[Sequence[Part], Studio], list[Found]] = in_turn
 ) -> list[dict]:
     """All measures of the shipped mover, and of the rows without a network."""
     size = studio.size

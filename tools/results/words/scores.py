@@ -17,14 +17,7 @@ from motiondiff_edu.metrics.sentences import confusion, rows_of
 from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.pretrained.judges import Judge
 
-from ..walks.scores import (
-    Measure,
-    measure_of,
-    over_floor,
-    ratio,
-    root_mean,
-    squared_bone_error,
-)
+from ..walks.scores import Measure, measure_of, over_floor, ratio, root_mean, squared_bone_error
 from .rows import sketch
 from .trials import Pair, Positions, Trials, minimal_pairs
 
@@ -102,7 +95,7 @@ def retrieved(panel: Panel, row: Sequence[Points]) -> list[Measure]:
 
     The interval has 95 % of the values of the single judges and pools.
     """
-    found = {name: [] for name in (*TOPS, *(f"{top}_over_real" for top in TOPS), *OTHERS)}
+    found = {name: [] for name in RETRIEVED}
     for mine, data in zip(row, panel.data, strict=True):
         for draw in range(REPLICATIONS):
             own, real = (
@@ -116,12 +109,14 @@ def retrieved(panel: Panel, row: Sequence[Points]) -> list[Measure]:
         found["mm_dist_over_real"].append(found["mm_dist"][-1] / mm_dist(data.texts, data.motions))
         found["fid"].append(frechet.fid(mine.motions, data.motions))
         found["diversity"].append(diversity.diversity(mine.motions))
-    units = {"mm_dist": "distance", "fid": "FID", "diversity": "distance"}
-    return [spread(name, values, units.get(name, "share")) for name, values in found.items()]
+    return [spread(name, values, RETRIEVED[name]) for name, values in found.items()]
 
 
 TOPS = tuple(f"r_precision_top{k}" for k in range(1, TOP + 1))
-OTHERS = ("mm_dist", "mm_dist_over_real", "fid", "diversity")
+RETRIEVED = {  # and their units
+    **{f"{top}{end}": "share" for end in ("", "_over_real") for top in TOPS},
+    "mm_dist": "distance", "mm_dist_over_real": "share", "fid": "FID", "diversity": "distance",
+}  # fmt: skip
 
 
 def spread(name: str, values: Sequence[float], unit: str) -> Measure:
