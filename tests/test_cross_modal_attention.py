@@ -202,11 +202,13 @@ def test_block_is_its_formula():
     g = torch.Generator().manual_seed(5)
     x = torch.randn(B, T, 12, generator=g)
     context = torch.randn(B, M, 12, generator=g)
-    n = F.layer_norm(x, (12,), block.norm_self.weight, block.norm_self.bias)
-    y = x + block.self_attention(n, n)
-    y = y + block.cross_attention(F.layer_norm(y, (12,)), context)
-    y = y + block.ff(F.layer_norm(y, (12,)))
-    torch.testing.assert_close(block(x, context=context), y)
+    biases = torch.randn(1, H, T, T, generator=g), torch.randn(1, H, T, M, generator=g)
+    for own, crossed in ((None, None), biases):
+        n = F.layer_norm(x, (12,), block.norm_self.weight, block.norm_self.bias)
+        y = x + block.self_attention(n, n, own)
+        y = y + block.cross_attention(F.layer_norm(y, (12,)), context, crossed)
+        y = y + block.ff(F.layer_norm(y, (12,)))
+        torch.testing.assert_close(block(x, own, context, crossed), y)
 
 
 def test_each_part_of_a_block_is_dropped_in_training_alone():
