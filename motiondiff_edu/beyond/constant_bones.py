@@ -55,8 +55,8 @@ class Lengths:
                 found.append(one)
             return np.stack(found, -1)
 
-        rigid = (distances(pairs, np.nanmedian) for pairs in (BONES, PELVIS))
-        return cls(*rigid, distances(TRUNK, np.nanmin))
+        bones, pelvis = (distances(pairs, np.nanmedian) for pairs in (BONES, PELVIS))
+        return cls(bones, pelvis, distances(TRUNK, np.nanmin))
 
     def completed(self) -> "Lengths":
         """The same, with unknown bones and pelvises as those of a course figure of the same size.
