@@ -3,6 +3,8 @@
 Watching changes nothing.
 """
 
+from math import pi
+
 import pytest
 import torch
 from torch import nn
@@ -15,6 +17,7 @@ from motiondiff_edu.cross_modal_attention import (
     attention,
     attention_weights,
     relative_position_bucket,
+    rotary,
     watch,
 )
 
@@ -183,6 +186,12 @@ def test_watching_within_watching_goes_on_afterwards():
             layer(x, x)
         layer(x, x)
     assert [len(seen) for maps in (outer, inner) for seen in maps.values()] == [2, 1]
+
+
+def test_each_pair_is_turned_by_its_own_angle():
+    """The pairs are (1, 2) and (3, 0): a quarter turn of the one, half a turn of the other."""
+    turned = rotary(torch.tensor([[1.0, 3.0, 2.0, 0.0]]), torch.tensor([[pi / 2, pi]]))
+    torch.testing.assert_close(turned, torch.tensor([[-2.0, -3.0, 1.0, 0.0]]))
 
 
 def test_heads_own_neighbouring_channels():
