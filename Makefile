@@ -14,7 +14,7 @@ PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.14; 
 # Python keeps what it compiled of the packages: the tests start hundreds of processes, and each would compile them again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help lab demo doctor test unit notebooks pages browser fuzz lint results bench pretrained student clean
+.PHONY: help lab demo doctor test unit quick notebooks pages browser fuzz lint results bench pretrained student clean
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -98,9 +98,14 @@ browser: $(VENV)/.test ## only the tests that need Chromium
 fuzz: $(VENV)/.test ## 2,000 damaged files and odd inputs for each reader (EXAMPLES=N: another number)
 	MOTIONDIFF_FUZZ=$(or $(EXAMPLES),2000) OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) tests/fuzz
 
-lint: $(VENV)/.test ## ruff, the form of the notebooks, the student edition
+# The tests of tests/quick.txt: the two papers' ideas, the space around them, and the layers.
+quick: $(VENV)/.test ## the tests of the heart of the library, in a minute and a half
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) --dist loadfile @tests/quick.txt
+
+lint: $(VENV)/.test ## ruff, types, the form of the notebooks, the student edition
 	$(BIN)/python -m ruff check .
 	$(BIN)/python -m ruff format --check --quiet motiondiff_edu data_synth tools benchmarks tests
+	$(BIN)/python -m mypy
 	$(BIN)/python tools/check_notebooks.py
 	$(BIN)/python tools/build_student.py --check
 
@@ -117,4 +122,4 @@ pretrained: $(VENV)/.lab ## train all shipped weights again (hours)
 	$(BIN)/python -m motiondiff_edu.recipes --out motiondiff_edu/pretrained
 
 clean: ## remove .venv and build files; keep trainings in progress (build/runs) and rollouts (build/results)
-	rm -rf $(VENV) build/bdist* build/numba build/lib build/quick build/executed build/pages dist *.egg-info .pytest_cache .ruff_cache
+	rm -rf $(VENV) build/bdist* build/numba build/lib build/quick build/executed build/pages dist *.egg-info .pytest_cache .ruff_cache .mypy_cache

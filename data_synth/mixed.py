@@ -40,6 +40,7 @@ def sentences(n: int, seed: int, seconds: float = 10.0) -> Iterator[Motion]:
 
 def _walked(seconds: float, rng: np.random.Generator) -> Motion:
     clip = drawn_walk(seconds, rng)
+    assert clip.contacts is not None  # a synthetic walk has them
     return clip.world(), clip.contacts
 
 

@@ -74,6 +74,8 @@ class RelativeBias(nn.Module):
     The times of queries and keys are in frames. They can belong to different modalities.
     """
 
+    buckets: Int[Tensor, "T M"]
+
     def __init__(self, heads: int, query_times: Int[Tensor, "T"], key_times: Int[Tensor, "M"]):
         super().__init__()
         self.table = nn.Parameter(torch.zeros(32, heads))
@@ -133,7 +135,7 @@ class CrossModalAttention(nn.Module):
         self.q = nn.Linear(width, width)
         self.kv = nn.Linear(context_width or width, 2 * width)
         self.out = nn.Linear(width, width)
-        self.watcher = None  # a list inside `watch`
+        self.watcher: list[Tensor] | None = None  # a list inside `watch`
 
     def split(self, x: Float[Tensor, "B T W"]) -> Float[Tensor, "B H T d"]:
         """Split the channels into heads: head h has channels h*d ... (h+1)*d - 1."""
@@ -225,7 +227,7 @@ def watch(model: nn.Module) -> Iterator[dict[str, list[Float[Tensor, "B H T M"]]
     Notebook: 06
     """
     layers = {name: m for name, m in model.named_modules() if isinstance(m, CrossModalAttention)}
-    maps = {name: [] for name in layers}
+    maps: dict[str, list[Tensor]] = {name: [] for name in layers}
     before = {name: layer.watcher for name, layer in layers.items()}
     try:
         for name, layer in layers.items():

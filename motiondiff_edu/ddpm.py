@@ -348,7 +348,7 @@ def falling(steps: int | Sequence[int], S: int) -> list[int]:
 
     Raises ValueError for steps that do not decrease, or are outside 1..S.
     """
-    if isinstance(steps, Integral):
+    if isinstance(steps, int | Integral):  # Integral: those of numpy, too
         return timesteps(S, int(steps))
     visited = list(steps)
     falls = visited == sorted(set(visited), reverse=True)
@@ -381,12 +381,17 @@ def ddim_step(
     """Leap to step `after`.
 
     x_after = sqrt(ab_after) x0_hat + sqrt(1 - ab_after - sigma^2) eps_hat + sigma noise.
+    Raises ValueError for a sigma without noise, IndexError for a step outside 0..S.
 
     Source: DDIM (Song, Meng and Ermon, 2021).
     """
     then = schedule.at(after, x0_hat)
     x = then.signal * x0_hat + math.sqrt(max(then.noise**2 - sigma**2, 0.0)) * eps_hat
-    return x + sigma * noise if sigma else x
+    if not sigma:
+        return x
+    if noise is None:
+        raise ValueError(f"a leap with sigma = {sigma:g} draws noise: pass it as `noise`")
+    return x + sigma * noise
 
 
 @torch.no_grad()

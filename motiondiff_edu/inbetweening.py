@@ -61,8 +61,10 @@ def inpaint_steps(
     Source: MoFusion 4.4; RePaint's resampling.  Notebook: 15
     """
     some, x = bool(known.any()), start
-    number = isinstance(steps, Integral)
-    visited = timesteps(schedule.S, int(steps)) if number else list(steps)
+    if isinstance(steps, int | Integral):
+        visited = timesteps(schedule.S, int(steps))
+    else:
+        visited = list(steps)
     if not visited or not 1 <= min(visited) <= max(visited) <= schedule.S:
         raise ValueError(f"steps must be between 1 and {schedule.S}; these are {visited}")
     if any(s == after for s, after in pairwise(visited)):

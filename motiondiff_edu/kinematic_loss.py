@@ -86,7 +86,7 @@ def training_loss(
     eps = draw(x0, generator)
     x_s = q_sample(x0, s, schedule, eps)  # eq. 1-2
     output = model(x_s, s, context)
-    target = model.config.target
+    target = model.config.target  # type: ignore[attr-defined]  # a network has its configuration
     L_da = loss(target_of(x0, eps, s, schedule, target) - output, s)
     if kinematic is None:
         return L_da

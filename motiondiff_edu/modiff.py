@@ -265,5 +265,6 @@ def training_loss(
         past = dropout(past, s, generator)  # eq. 12
     eps = draw(x0, generator)
     x_s = q_sample(x0, s, schedule, eps)  # eq. 2
-    target = target_of(x0, eps, s, schedule, model.config.target)
+    kind = model.config.target  # type: ignore[attr-defined]  # a network has its configuration
+    target = target_of(x0, eps, s, schedule, kind)
     return loss(target - model(x_s, s, past, control), s)  # eq. 10

@@ -224,10 +224,13 @@ class MoFusion(nn.Module):
         mel    a standardised log-Mel spectrogram
         times  of its frames, in seconds from the first motion frame
         mask   True where there is music, for pieces of several lengths in one batch
+        Raises ValueError if the network takes no music.
         """
         present = (
             mel.new_ones(1, mel.shape[1], 1) if mask is None else mask[..., None].to(mel.dtype)
         )
+        if self.music is None:
+            raise ValueError("this network takes no music; pass music=None")
         tokens, step = self.music(mel, present), 2 if self.config.music_layers else 1
         return Music(tokens, times[::step], None if mask is None else mask[:, ::step])
 
@@ -369,7 +372,10 @@ class Level:
         )
         code = (config.slowest, config.fastest)
         angles = {
-            w: tuple(angles_of(t, w // config.heads, *code) for t in (times, token_times))
+            w: (
+                angles_of(times, w // config.heads, *code),
+                angles_of(token_times, w // config.heads, *code),
+            )
             for w in set(config.widths)
         }
         return cls(inside[..., None].float(), times, bias, angles)

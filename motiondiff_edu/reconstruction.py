@@ -40,8 +40,15 @@ class Rollout:
     ) -> Float[Tensor, "B n D"]:
         """The n = T - T_h poses after `past` (metres); the walker sees the control ahead."""
         keep = self.keep or self.walker.config.T_p
-        how = {"generator": self.generator, "steps": self.steps, "keep": keep, "hold": False}
-        return generate(self.walker, past, control, **how)
+        return generate(
+            self.walker,
+            past,
+            control,
+            generator=self.generator,
+            steps=self.steps,
+            keep=keep,
+            hold=False,
+        )
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,8 @@
 Watching changes nothing.
 """
 
+from math import pi
+
 import pytest
 import torch
 from torch import nn
@@ -15,6 +17,7 @@ from motiondiff_edu.cross_modal_attention import (
     attention,
     attention_weights,
     relative_position_bucket,
+    rotary,
     watch,
 )
 
@@ -186,6 +189,12 @@ def test_watching_within_watching_goes_on_afterwards():
     assert [len(seen) for maps in (outer, inner) for seen in maps.values()] == [2, 1]
 
 
+def test_each_pair_is_turned_by_its_own_angle():
+    """The pairs are (1, 2) and (3, 0): a quarter turn of the one, half a turn of the other."""
+    turned = rotary(torch.tensor([[1.0, 3.0, 2.0, 0.0]]), torch.tensor([[pi / 2, pi]]))
+    torch.testing.assert_close(turned, torch.tensor([[-2.0, -3.0, 1.0, 0.0]]))
+
+
 def test_heads_own_neighbouring_channels():
     layer, x = random_layer(12, H), torch.arange(12.0).expand(B, T, 12)
     assert torch.equal(layer.split(x)[0, 1, 0], torch.tensor([4.0, 5, 6, 7]))
@@ -203,12 +212,14 @@ def test_block_is_its_formula():
     g = torch.Generator().manual_seed(5)
     x = torch.randn(B, T, 12, generator=g)
     context = torch.randn(B, M, 12, generator=g)
-    n = F.layer_norm(x, (12,), block.norm_self.weight, block.norm_self.bias)
-    y = x + block.self_attention(n, n)
-    y = y + block.cross_attention(F.layer_norm(y, (12,)), context)
-    y = y + block.ff(F.layer_norm(y, (12,)))
+    biases = torch.randn(1, H, T, T, generator=g), torch.randn(1, H, T, M, generator=g)
     kept = block.cross_attention.keys_and_values(context)
-    torch.testing.assert_close(block(x, context=kept), y)
+    for own, crossed in ((None, None), biases):
+        n = F.layer_norm(x, (12,), block.norm_self.weight, block.norm_self.bias)
+        y = x + block.self_attention(n, n, own)
+        y = y + block.cross_attention(F.layer_norm(y, (12,)), context, crossed)
+        y = y + block.ff(F.layer_norm(y, (12,)))
+        torch.testing.assert_close(block(x, own, kept, crossed), y)
 
 
 def test_each_part_of_a_block_is_dropped_in_training_alone():

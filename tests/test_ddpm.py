@@ -14,6 +14,7 @@ from motiondiff_edu.ddpm import (
     cosine_schedule,
     ddim_sigma,
     ddim_step,
+    ddim_steps,
     draw,
     final,
     linear_schedule,
@@ -267,6 +268,48 @@ def test_one_reverse_step_by_hand(variance):
     tensors = [torch.tensor([values], dtype=torch.float64) for values in (x_2, eps_hat, z)]
     ours = p_sample(tensors[0], 2, tensors[1], schedule, tensors[2], variance)
     assert ours[0].tolist() == pytest.approx(x_1, rel=1e-12)
+
+
+def test_one_leap_by_hand():
+    """From s = 3 to 1: alpha_bar_1 = 0.9, and alpha_bar_3 = 0.9 * 0.6 * 0.25 = 0.135."""
+    schedule = make_schedule(torch.tensor([0.1, 0.4, 0.75, 0.95], dtype=torch.float64))
+    sigma = 0.5 * (0.1 / 0.865 * (1 - 0.135 / 0.9)) ** 0.5
+    assert ddim_sigma(3, 1, schedule, 0.5) == pytest.approx(sigma, rel=1e-12)
+    guesses = ([0.7, -1.2], [0.3, 0.5], [-0.8, 1.5])
+    x0_hat, eps_hat, z = (torch.tensor([values], dtype=torch.float64) for values in guesses)
+    x_1 = [
+        0.9**0.5 * x0 + (0.1 - sigma**2) ** 0.5 * eps + sigma * n
+        for x0, eps, n in zip(*guesses, strict=True)
+    ]
+    ours = ddim_step(x0_hat, eps_hat, 1, schedule, sigma, z)
+    assert ours[0].tolist() == pytest.approx(x_1, rel=1e-12)
+
+
+@pytest.mark.parametrize("eta", [0.0, 0.7, 1.0])
+def test_a_leap_with_the_true_guesses_keeps_the_noise_of_its_step(eta):
+    """The variance around sqrt(alpha_bar) x0 is 1 - alpha_bar, however much of it is new."""
+    schedule, n = linear_schedule(), 40_000
+    random = torch.Generator().manual_seed(4)
+    eps, z = torch.randn(2, n, 1, generator=random)
+    made = ddim_step(torch.zeros(n, 1), eps, 30, schedule, ddim_sigma(60, 30, schedule, eta), z)
+    assert made.var().item() == pytest.approx(1 - schedule.alpha_bar[30].item(), rel=0.03)
+
+
+def test_a_leap_that_draws_noise_wants_it():
+    x = torch.zeros(2, 3)
+    with pytest.raises(ValueError, match="sigma = 0.5 draws noise: pass it"):
+        ddim_step(x, x, 5, linear_schedule(), 0.5)
+
+
+def test_leaping_with_all_steps_and_all_noise_is_ddpm_with_the_posterior():
+    schedule = linear_schedule(9, 0.05, 0.7)
+    truth = exact_denoiser(mixture(torch.ones(1), torch.zeros(1, 3), torch.eye(3)[None]), schedule)
+    start, noise = torch.randn(4, 3).double(), torch.randn(9, 4, 3).double()
+    leaps = list(ddim_steps(truth, start, schedule, 9, 1.0, noise=noise))
+    steps = list(sample_steps(truth, start, schedule, noise=noise, variance="posterior"))
+    assert [one.s for one in leaps] == [one.s for one in steps] == list(range(9, -1, -1))
+    for leap, step in zip(leaps, steps, strict=True):
+        torch.testing.assert_close(leap.x_s, step.x_s)
 
 
 @pytest.mark.parametrize("variance", ["beta", "posterior"])

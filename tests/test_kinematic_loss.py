@@ -97,6 +97,13 @@ def test_a_foot_slides_only_where_it_should_stand():
     assert slide_loss(positions, left & right, TOES).item() == 0
 
 
+def test_the_step_that_ends_a_stance_is_no_slide():
+    positions, planted = torch.zeros(1, 4, 21, 3), torch.zeros(1, 4, 2, dtype=torch.bool)
+    positions[0, 2:, TOES[0], 0] = 0.5  # the toe stands in frames 0 and 1, and then goes
+    planted[0, :2, 0] = True
+    assert slide_loss(positions, planted, TOES).item() < 1e-5
+
+
 def test_gradients_are_finite_even_where_a_bone_has_no_length():
     positions = torch.zeros(1, 5, 3, 3, requires_grad=True)
     lengths = bone_lengths(positions, CHAIN)

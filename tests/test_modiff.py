@@ -145,6 +145,14 @@ def test_without_time_the_future_is_a_set_of_frames():
         torch.testing.assert_close(turned, model(x_s, s, past, control), atol=1e-5, rtol=1e-5)
 
 
+def test_at_the_start_each_frame_has_its_own_code_of_time():
+    model = MoDiff(TINY)
+    wanted = step_embedding(8 * torch.arange(TINY.T_h + TINY.T_p), TINY.width)
+    torch.testing.assert_close(model.time.detach(), wanted)
+    apart = torch.cdist(wanted, wanted) + 9 * torch.eye(len(wanted))
+    assert apart.min() > 0.5
+
+
 def test_skip_adds_w_of_s_times_the_input():
     with_skip = lively(TINY)
     without = MoDiff(replace(TINY, skip=False)).eval()

@@ -63,7 +63,10 @@ def mirror(clip: Described) -> Described:
     acted = clip.acted
     positions, contacts = dance_frame.mirror(acted.positions), acted.contacts[:, ::-1].copy()
     sentence = mirrored_sentence(acted.sentence)
-    spans = tuple(replace(span, act=mirrored(span.act)) for span in acted.spans)
+    spans = tuple(
+        replace(span, act=mirrored(span.act))  # type: ignore[arg-type]  # a span has an act
+        for span in acted.spans
+    )
     turned = replace(acted, positions=positions, contacts=contacts, spans=spans, sentence=sentence)
     return Described(turned, tuple(exchanged(text) for text in clip.captions))
 

@@ -109,6 +109,7 @@ def _performed(sentence: Sentence, seconds: float, late: float, seed: int) -> tu
         spans += [Span(at / FPS + first, at / FPS + end, act) for first, end, act in inner]
         made = piece if made is None else _joined(made, piece, at, block[0].kind == "way")
         at += cut
+    assert made is not None  # a sentence has a block
     timed = _arms(slots, spans, rng)
     ends = [span.last for span in spans if VERBS[span.act.verb].kind == "spot"]
     over = max([0.0, *ends, *(one.last for one in timed)]) - seconds

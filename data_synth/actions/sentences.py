@@ -7,7 +7,7 @@ they are. Of a form too long for LONGEST seconds, the largest counts are lowered
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 
@@ -62,7 +62,7 @@ def draw(rng: np.random.Generator, seconds: float | None = None) -> tuple[Senten
 def fitted(form: Sentence, seconds: float) -> list[Sentence]:
     """The form with its largest counts lowered to 1, 2 ... MOST, as far as there is room."""
     lowered = [
-        tuple(_with_counts(phrase, lambda count, most=most: min(count, most)) for phrase in form)
+        tuple(_with_counts(phrase, partial(min, most)) for phrase in form)
         for most in range(1, MOST + 1)
     ]
     return [one for one in lowered if room(one) <= seconds]

@@ -85,7 +85,8 @@ def jump(p: Sheet, at: float, period: float, act: Act) -> None:
     if ahead:
         p.go(land, z=ahead, during=flight)
         places = [(x, 0.0) for x, _ in places]
-    p.jump(land + 0.07, *places, height=height, swing=flight)
+    left, right = places
+    p.jump(land + 0.07, left, right, height=height, swing=flight)
     p.key("drop", (land + 0.16, 0.14), (max(at + 0.97 * period, land + 0.3), 0.015))
     p.key("lean", (max(at + 0.97 * period, land + 0.3), 3.0))
     p.arms(max(at + 0.97 * period, land + 0.3), _down(p))
@@ -161,7 +162,8 @@ def _hold(p: Sheet, name: str, until: float) -> None:
 
 
 def _down(p: Sheet) -> tuple[float, float, float, float]:
-    return tuple(p.rest[f"l_{name}"] for name in ("swing", "out", "twist", "elbow"))
+    swing, out, twist, elbow = (p.rest[f"l_{name}"] for name in ("swing", "out", "twist", "elbow"))
+    return swing, out, twist, elbow
 
 
 WRITERS: dict[str, Callable[[Sheet, float, float, Act], None]] = {
@@ -203,4 +205,4 @@ def acted(
     positions, contacts = performed(
         script, t, felt, MANNER, seed, np.random.default_rng([seed, 8]), standing.toes
     )
-    return Piece(positions, contacts), Standing(tuple(script.toes))
+    return Piece(positions, contacts), Standing((script.toes[L], script.toes[R]))

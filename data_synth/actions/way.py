@@ -128,11 +128,11 @@ def walked(
     phase: float,
 ) -> Piece:
     """A walk in the world: on the way from a place (x, z, heading), or from standing feet."""
-    standing = isinstance(start, Standing)
+    standing = start if isinstance(start, Standing) else None
     warm = 0 if standing else WARM_UP
     led = np.concatenate([np.repeat(control[:1], warm, 0), control])
-    at = start.root if standing else start
-    places = start.ankles if standing else None
+    at = start.root if isinstance(start, Standing) else start
+    places = standing.ankles if standing else None
     root_xz, heading = root_path(led, at)
     poses, contacts = body(led, root_xz, heading, white(seed, len(led)), style, phase, FPS, places)
     world = to_world(poses, led, at)[warm:]
@@ -145,7 +145,7 @@ def settled(piece: Piece, least: int, frames: int) -> int:
 
     Raises ValueError when there is none.
     """
-    both = piece.contacts.all(1)
+    both = np.asarray(piece.contacts.all(1))
     for t in range(least, len(piece) - frames):
         if both[t : t + frames].all():
             return t
@@ -159,4 +159,5 @@ def standing_at(piece: Piece, t: int) -> Standing:
         ahead = piece.positions[t, toe] - piece.positions[t, ankle]
         x, _, z = piece.positions[t, toe]
         toes.append((float(x), float(z), float(np.arctan2(ahead[0], ahead[2]))))
-    return Standing(tuple(toes))
+    left, right = toes
+    return Standing((left, right))

@@ -145,11 +145,11 @@ def performed(
     heading = facing(script, b)
     head, chest = ahead_of_the_turn(heading, FPS)
     channels["look"], channels["twist"] = channels["look"] + head, channels["twist"] + chest
-    tracks = tuple(
+    tracks = [
         _foot(script.steps[foot], start[foot], t, felt, channels[heel], manner.roll, rng)
         for foot, heel in enumerate(("l_heel", "r_heel"))
-    )
-    positions = dancer(channels, tracks, heading, manner.level)
+    ]
+    positions = dancer(channels, (tracks[0], tracks[1]), heading, manner.level)
     return positions, np.stack([k.planted for k in tracks], -1)
 
 

@@ -194,9 +194,8 @@ def draw_part(
     if (
         "clap" in part and "snare" in part and groove.one_backbeat
     ):  # all of them have the backbeat at the same place
-        part["clap"] = tuple(
-            [(at, "x") for at, mark in bar if mark in "Xx"] for bar in part["snare"]
-        )
+        first, second = ([(at, "x") for at, mark in bar if mark in "Xx"] for bar in part["snare"])
+        part["clap"] = (first, second)
     return part
 
 

@@ -21,7 +21,7 @@ SCALES = {
     "dorian": (0, 2, 3, 5, 7, 9, 10),
 }
 # degrees of the scale, 0 the tonic, one chord a bar
-PROGRESSIONS = {
+PROGRESSIONS: dict[str, dict[str, tuple[tuple[int, ...], ...]]] = {
     "house": {
         "major": ((0, 5, 3, 4), (3, 4, 5, 0)),
         "minor": ((0, 5, 6, 0), (0, 2, 5, 6), (5, 6, 0, 0)),

@@ -110,7 +110,7 @@ def sounding(form: Form, hits: list[Hit], notes: list[Note]) -> Bool[np.ndarray,
     All beats outside silent bars are; in a silent bar those on which a pick-up sounds.
     """
     music = np.repeat([bar.section != "silence" for bar in form.bars], form.metre)
-    onsets = np.array([x.position for x in (*hits, *notes)])
+    onsets = np.array([x.position for x in hits] + [x.position for x in notes])
     whole = np.unique(np.floor(onsets + 1e-6).astype(int))
     music[whole[(whole >= 0) & (whole < len(music))]] = True
     return music

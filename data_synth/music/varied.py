@@ -213,7 +213,8 @@ def _parts(
 def pulse(form: Form, hits: list[Hit], notes: list[Note]) -> float:
     """The share of the beats, outside breaks and silences, in which a stroke or a note begins."""
     plays = np.repeat([bar.section not in ("break", "silence") for bar in form.bars], form.metre)
-    onsets = np.floor([x.position + 1e-6 for x in (*hits, *notes)]).astype(int)
+    places = np.array([x.position for x in hits] + [x.position for x in notes])
+    onsets = np.floor(places + 1e-6).astype(int)
     begins = np.isin(np.arange(len(plays)), onsets)
     return float(begins[plays].mean())
 

@@ -42,7 +42,8 @@ def drive(control, root_xz, heading, rows, style: Style, lean_shift, run, fps: f
     smooth = follow(arrived, 0.06, fps)
     slow = drift(rows[:, 0], 3.0, fps)
     fast = drift(rows[:, 1], 0.3, fps)
-    rate = cadence(*smooth.T, run) * style.cadence * np.exp(0.032 * slow + 0.012 * fast)
+    forward, left, yaw = smooth.T
+    rate = cadence(forward, left, yaw, run) * style.cadence * np.exp(0.032 * slow + 0.012 * fast)
     # a changing velocity is extrapolated a little
     ahead = arrived + np.clip(1.2 * (arrived - smooth), -0.15, 0.15)
     need = np.sqrt(arrived[:, 0] ** 2 + arrived[:, 1] ** 2 + (0.25 * arrived[:, 2]) ** 2)

@@ -147,13 +147,9 @@ class _Feet:
         ax, az = ax + ex * s + ez * c, az + ex * c - ez * s
         keep = min(max((u - 0.52) / 0.36, 0.0), 1.0)
         gain = 1 - keep * keep * (3 - 2 * keep)
-        self.aim[foot] = tuple(
-            a + gain * (b - a) for a, b in zip(self.aim[foot], (ax, az, ayaw), strict=True)
-        )
+        self.aim[foot] = _between(self.aim[foot], (ax, az, ayaw), gain)
         share = swing_progress(min(u, 1.0), self.d.run[t])
-        here = tuple(
-            a + share * (b - a) for a, b in zip(self.start[foot], self.aim[foot], strict=True)
-        )
+        here = _between(self.start[foot], self.aim[foot], share)
         self.place[foot] = here
         want = min(max(self.d.forward[t] / 1.1, 0.0), 1.15)
         self.toe_up[foot] += (want - self.toe_up[foot]) * (1 - exp(-dt / 0.1))
@@ -176,6 +172,12 @@ class _Feet:
         x += TOE_AHEAD * (sin(yaw) - sin(yaw + turn))
         z += TOE_AHEAD * (cos(yaw) - cos(yaw + turn))
         self.place[foot] = (x, z, yaw + turn)
+
+
+def _between(a: Place, b: Place, share: float) -> Place:
+    """A share of the way from one place to another."""
+    x, z, yaw = (one + share * (other - one) for one, other in zip(a, b, strict=True))
+    return x, z, yaw
 
 
 def plan(

@@ -8,6 +8,7 @@ straight walking; relations with speed follow straight lines through them. No re
 (README.md, "Licence and sources"). The rest is set by hand.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -104,7 +105,7 @@ _RUN_PITCH = [
 _RUN_PITCH += [(1.85, 4), (2, -7)]
 
 
-def _loop(knots: list[tuple[float, float]]) -> PchipInterpolator:
+def _loop(knots: Sequence[tuple[float, float]]) -> PchipInterpolator:
     x, y = np.array(knots).T
     return PchipInterpolator(
         np.concatenate([x - 2, x[1:], x[1:] + 2]), np.concatenate([y, y[1:], y[1:]])

@@ -65,7 +65,8 @@ def limits(clips: int = 600, seconds: float = 12.0, spots: int = 60) -> dict[str
     controls = np.concatenate([c.control for c in walks])
     out |= {"knee_smallest_deg": knees.min(), "knee_largest_deg": knees.max()}
     out["lowest_joint_mm"] = 1e3 * min(c.poses[..., 1].min() for c in walks)
-    out["planted_toe_mm_a_frame"] = 1e3 * max(planted_slip(c.world(), c.contacts) for c in walks)
+    feet = [(c.world(), c.contacts) for c in walks if c.contacts is not None]
+    out["planted_toe_mm_a_frame"] = 1e3 * max(planted_slip(*both) for both in feet)
     out["bone_error_m"] = max(bone_error(c.poses) for c in walks)
     out |= {"ahead_slowest_mps": controls[:, 0].min(), "ahead_fastest_mps": controls[:, 0].max()}
     out["aside_mps"] = np.abs(controls[:, 1]).max()

@@ -22,7 +22,7 @@ def save_npz(clip: Clip, path: Path) -> None:
             f,
             poses=clip.poses.astype(np.float32),
             control=clip.control,
-            contacts=clip.contacts,
+            contacts=clip.contacts,  # type: ignore[arg-type]  # a walk has them
             fps=clip.fps,
             source=np.array(clip.source),
             style=np.array(clip.info.get("style", "")),

@@ -72,7 +72,8 @@ def _segment(found: list, words: str, end: int) -> tuple[float, float, float, fl
         (number, at), *rest = rest
         values[column] = sign * _number(number, words, at)
         filled.add(column)
-    return tuple(values)
+    forward, left, turn, seconds = values
+    return forward, left, turn, seconds
 
 
 def _number(text: str, words: str, at: int) -> float:

@@ -63,7 +63,7 @@ def spans(words: str | None) -> list[tuple[int, int | None]]:
     """(first, last + 1) of each span in "40-80,100-120", or of all frames.  Raises ValueError."""
     if words is None:
         return [(0, None)]
-    found = []
+    found: list[tuple[int, int | None]] = []
     for piece in words.split(","):
         match = re.fullmatch(r"\s*(\d+)\s*(?:-\s*(\d+)\s*)?", piece, re.ASCII)
         if not match:

@@ -18,7 +18,9 @@ from torch import Tensor
 from ..performers.windows import Windows
 from .linear_gaussian import LinearGaussian, design, fitted
 
-Drop = Callable[[Tensor, torch.Generator], Tensor]  # (past (B, T_h, D), generator) -> dropped past
+Drop = Callable[
+    [Tensor, torch.Generator | None], Tensor
+]  # (past (B, T_h, D), generator) -> dropped past
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +88,7 @@ def frames_zeroed(rate: float, T_h: int, D: int) -> Moments:
     frame = torch.arange(T_h * D) // D
     alike = frame[:, None] == frame
     both = torch.tensor([1 - rate, (1 - rate) ** 2], dtype=torch.float64)
-    return Moments(1 - rate, torch.where(alike, *both))
+    return Moments(1 - rate, torch.where(alike, both[0], both[1]))
 
 
 def entries_rescaled(rate: float, entries: int) -> Moments:

@@ -13,10 +13,11 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import torch
 from jaxtyping import Float, Int
-from torch import Tensor, nn
+from torch import Tensor
 from torch.nn.utils.rnn import pad_sequence
 
 from .clip_encoder import ClipTokens
@@ -43,8 +44,8 @@ class Clip:
     """CLIP's text transformer, frozen, and the tokenizer that goes with it."""
 
     name: str
-    model: nn.Module
-    tokenizer: object
+    model: Any  # a CLIPTextModel and a CLIPTokenizer of transformers
+    tokenizer: Any
 
     @property
     def width(self) -> int:
@@ -170,9 +171,10 @@ def load(where: str | Path = NAME, download: bool = False) -> Clip:
         )
     try:
         with _quiet():
-            model, found = CLIPTextModel.from_pretrained(
+            loaded: Any = CLIPTextModel.from_pretrained(
                 place, dtype=torch.float32, output_loading_info=True, local_files_only=not fetch
             )
+            model, found = loaded
             tokenizer = CLIPTokenizer.from_pretrained(place, local_files_only=not fetch)
     except Exception as error:  # transformers raises whatever its readers of files raise
         what = "could not be downloaded" if fetch else "has no CLIP that can be used"

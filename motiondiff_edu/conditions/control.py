@@ -93,7 +93,7 @@ def as_long(control: Float[np.ndarray, "n 3"], rows: int | None) -> Float[np.nda
 def _four_numbers(segment: object) -> bool:
     if not isinstance(segment, (list, tuple, np.ndarray)) or len(segment) != 4:
         return False
-    return all(isinstance(value, Real) and np.isfinite(value) for value in segment)
+    return all(isinstance(value, Real) and math.isfinite(value) for value in segment)
 
 
 def joystick(

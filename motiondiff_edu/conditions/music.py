@@ -6,6 +6,7 @@ Notebook: 11
 """
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import torch
@@ -153,26 +154,6 @@ def frame_times(M: int) -> Float[Tensor, "M"]:
     return torch.arange(M, dtype=torch.float64, device="cpu") / FRAMES_PER_SECOND
 
 
-def crop_seconds(
-    mel: Float[Tensor, "*B M bands"], start: float | int, seconds: float | int
-) -> tuple[Float[Tensor, "*B n bands"], Float[Tensor, "n"]]:
-    """The Mel frames within `seconds` from `start`, and their times counted from `start`.
-
-    There are always n = floor(31.25 seconds) frames, so that crops can be stacked. The first is at
-    most 32 ms after `start`.
-    Raises ValueError for a span outside the song.  Notebook: 11
-    """
-    first = int(np.ceil(start * FRAMES_PER_SECOND - 1e-6))
-    n = int(np.floor(seconds * FRAMES_PER_SECOND + 1e-6))
-    if first < 0 or n < 1 or first + n > mel.shape[-2]:
-        lasts = (mel.shape[-2] - 1) / FRAMES_PER_SECOND
-        raise ValueError(
-            f"{seconds:g} s from {start:g} s are not within this song of {lasts:.2f} s; "
-            "one frame is 32 ms"
-        )
-    return mel[..., first : first + n, :], frame_times(first + n)[first:] - start
-
-
 def beats_of(
     audio: Float[Tensor, "N"] | Float[np.ndarray, "N"], sample_rate: int, lag: float = TRACKER_LAG
 ) -> Float[np.ndarray, "K"]:
@@ -187,7 +168,7 @@ def beats_of(
     # slow to import, and needed only for recordings: a composed song has its beats
     from .compiled import librosa
 
-    framing = {"sr": SAMPLE_RATE, "hop_length": TRACKER_HOP}
+    framing: dict[str, Any] = {"sr": SAMPLE_RATE, "hop_length": TRACKER_HOP}
     onsets = librosa.onset.onset_strength(y=np.asarray(audio), n_fft=N_FFT, **framing)
     _, beats = librosa.beat.beat_track(onset_envelope=onsets, units="time", **framing)
     return np.maximum(np.asarray(beats, dtype=np.float64) - lag, 0)

@@ -74,7 +74,11 @@ def constraints() -> dict[str, str]:
 def required() -> list[str]:
     """The packages that the course itself requires."""
     lines = importlib.metadata.requires("motiondiff-edu") or []
-    return [re.match(r"[\w.-]+", line)[0].lower() for line in lines if "extra ==" not in line]
+    return [
+        re.split(r"[^\w.-]", line, maxsplit=1)[0].lower()
+        for line in lines
+        if "extra ==" not in line
+    ]
 
 
 def versions() -> Finding:
@@ -213,7 +217,7 @@ def hearing() -> Finding:
     if not package:
         return Finding("hearing", "librosa is not installed", INSTALL)
     wrong = (done.stderr.strip().splitlines() or [f"the process died ({done.returncode})"])[-1]
-    files = os.path.join(os.path.dirname(package.origin), "**", "__pycache__", "*.nb?")
+    files = os.path.join(os.path.dirname(package.origin or ""), "**", "__pycache__", "*.nb?")
     remedy = f"remove what numba has compiled, which is made anew at the next use: {files}"
     return Finding("hearing", f"librosa's beat tracker fails: {wrong}", remedy)
 

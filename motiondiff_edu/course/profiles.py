@@ -22,4 +22,4 @@ def profile() -> Profile:
         raise ProfileError(
             f"MOTIONDIFF_PROFILE is {word!r}; set it to 'fast' or 'full', or leave it out for fast"
         )
-    return word
+    return "full" if word == "full" else "fast"

@@ -14,6 +14,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -224,6 +225,7 @@ def _check_cost(raw: bytes) -> None:
     memo, tuples = set(), set()
     place, again = 0, 0
     before = ""
+    number: Any
     for k, (op, number, _) in enumerate(pickletools.genops(raw)):
         if op.name in ("PUT", "BINPUT", "LONG_BINPUT", "MEMOIZE"):
             place = len(memo) if op.name == "MEMOIZE" else number

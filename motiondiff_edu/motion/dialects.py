@@ -166,7 +166,7 @@ def by_hierarchy(mapping: Mapping[str, str], bvh: Bvh) -> dict[str, str]:
             if chest in above and not ({name, *above[: above.index(chest)]} & taken):
                 tops[name] = len(above)
         if tops:
-            found["Head"] = max(tops, key=tops.get)
+            found["Head"] = max(tops, key=tops.__getitem__)
     return {joint: name for joint, name in found.items() if name}
 
 
@@ -216,7 +216,7 @@ def refuse_incomplete(mapping: Mapping[str, str], bvh: Bvh) -> None:
 
 
 Bones = Sequence[tuple[str, str]]  # of joints of the course
-LIMBS: tuple[Bones, Bones] = tuple(  # both legs, both arms
+LIMBS: tuple[Bones, ...] = tuple(  # both legs, both arms
     [bone for side in ("Left", "Right") for bone in pairwise(side + part for part in limb)]
     for limb in (("UpLeg", "Leg", "Foot"), ("Arm", "ForeArm", "Hand"))
 )
@@ -248,11 +248,11 @@ def unlike(bones: Bones, lengths: Sequence[float], mapping: Mapping[str, str]) -
     named = [
         f"{upper} ('{mapping[upper]}') to {lower} ('{mapping[lower]}')" for upper, lower in bones
     ]
-    lengths = dict(zip(named, lengths, strict=True))
-    longest, shortest = (choose(lengths, key=lengths.get) for choose in (max, min))
-    if lengths[longest] <= UNLIKE * lengths[shortest]:
+    by_bone = dict(zip(named, lengths, strict=True))
+    longest, shortest = (choose(by_bone, key=by_bone.__getitem__) for choose in (max, min))
+    if by_bone[longest] <= UNLIKE * by_bone[shortest]:
         return ""
-    times = lengths[longest] / max(lengths[shortest], 1e-9)
+    times = by_bone[longest] / max(by_bone[shortest], 1e-9)
     return f"{longest} is {times:.3g} times as long as {shortest}"
 
 

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -157,7 +158,7 @@ def write_npz(motion: Motion, path: Path) -> None:
         if getattr(motion, name) is not None:
             arrays[name] = np.asarray(getattr(motion, name))
     with replacing(path) as aside, open(aside, "wb") as file:
-        np.savez_compressed(file, **arrays)
+        np.savez_compressed(file, **arrays)  # type: ignore[arg-type]  # no array is a flag
 
 
 @registry.readers.register(".npz")
@@ -204,7 +205,9 @@ def _from_positions(arrays: dict[str, np.ndarray], source: str) -> Motion:
         return motion_of_keypoints(arrays["positions"].astype(np.float64), names, fps, source)
     if "parents" in arrays:
         skeleton = Skeleton(names, tuple(arrays["parents"].tolist()))
-    along = {name: arrays[name] for name in ("root", "contacts", "audio") if name in arrays}
+    along: dict[str, Any] = {
+        name: arrays[name] for name in ("root", "contacts", "audio") if name in arrays
+    }
     if "sample_rate" in arrays:
         along["sample_rate"] = int(arrays["sample_rate"])
     return Motion(arrays["positions"], fps, skeleton, source=source, **along)

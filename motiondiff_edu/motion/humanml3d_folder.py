@@ -187,7 +187,7 @@ def _described(name: str, file: Path, text: Path) -> Iterator[Described]:
         first, last = frames_of(span, len(motion))
         if last > first:
             yield Described(name, motion[first:last], tuple(together))
-        else:
+        elif span:
             warnings.warn(
                 f"{text.name}: no frame lies between {span[0]:g} and {span[1]:g} s of a motion of "
                 f"{motion.seconds:.2f} s; {together[0].text[:40]!r} is skipped",

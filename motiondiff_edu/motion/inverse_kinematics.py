@@ -117,7 +117,8 @@ def limbs_bent(
     more = np.maximum(0.0, 1 - was / STIFF) * np.maximum(aside - was, 0.0)
     side = np.einsum("tij,tj->ti", least_turn(before, line), bent)
     side = unit(side + more[:, None] * _first_aside(bends, line))
-    knee = root + along[:, None] * line + aside[:, None] * side
+    # along and aside are arrays, since d is one
+    knee = root + along[:, None] * line + aside[:, None] * side  # type: ignore[index]
     return np.stack([root, knee, root + d[:, None] * line], 1)
 
 

@@ -63,7 +63,7 @@ def sources_of(names: Sequence[str], source: str = "") -> dict[str, tuple[str, .
     twice = next((name for name, count in Counter(names).items() if count > 1), None)
     if twice is not None:
         raise MotionError(f"{source}: {twice!r} stands twice in `names`; each joint needs its own")
-    found = {joint: (name,) for joint, name in by_names(names).items()}
+    found: dict[str, tuple[str, ...]] = {joint: (name,) for joint, name in by_names(names).items()}
     bare = by_plain(names)
     for joint in MIDDLES.keys() - found.keys():
         groups = (group for group in MIDDLES[joint] if bare.keys() >= set(group))

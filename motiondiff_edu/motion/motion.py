@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from numbers import Integral
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -66,7 +67,7 @@ class Motion:
             fps = checked_rate(self.fps)
         except ValueError as error:
             raise MotionError(str(error)) from None
-        values = {
+        values: dict[str, Any] = {
             "fps": fps,
             "positions": _positions(self.positions, self.skeleton),
             "source": "" if self.source is None else _writable(str(self.source)),
@@ -91,7 +92,7 @@ class Motion:
 
         Raises MotionError for a missing joint, another skeleton, or a single frame.
         """
-        root = self.rooted().root
+        root = self._path()
         poses, control = to_root_frame(self.positions, root[:, :2], root[:, 2], self.fps)
         return Clip(poses, control, self.fps, self.contacts, self.source)
 
@@ -106,13 +107,18 @@ class Motion:
         place, heading = estimate_root(self.positions, self.fps)
         return replace(self, root=np.concatenate([place, heading[:, None]], axis=1))
 
+    def _path(self) -> Float[np.ndarray, "T 3"]:
+        path = self.rooted().root
+        assert path is not None  # `rooted` sees to it
+        return path
+
     @property
     def control(self) -> Float[np.ndarray, "T 3"]:
         """The speeds of each frame: forward m/s, left m/s, turning rad/s; the last row repeats.
 
         Raises MotionError as `to_clip` does.
         """
-        root = self.rooted().root
+        root = self._path()
         return control_from_path(root[:, :2], root[:, 2], self.fps)
 
     @property
@@ -177,7 +183,7 @@ class Motion:
                 f"{self.name}: no frame lies within [{frames.start}:{frames.stop}]; it has frames "
                 f"0 to {len(self) - 1}"
             )
-        cut = {"positions": self.positions[first:last]}
+        cut: dict[str, Any] = {"positions": self.positions[first:last]}
         for name in ("root", "contacts"):
             if getattr(self, name) is not None:
                 cut[name] = getattr(self, name)[first:last]
@@ -219,7 +225,7 @@ class Motion:
                     MotionWarning,
                     stacklevel=2,
                 )
-        joined = {"positions": np.concatenate([part.positions for part in parts])}
+        joined: dict[str, Any] = {"positions": np.concatenate([part.positions for part in parts])}
         for name in ("root", "contacts"):
             rows = [getattr(part, name) for part in parts]
             joined[name] = None if any(row is None for row in rows) else np.concatenate(rows)
@@ -229,7 +235,7 @@ class Motion:
             words = "the sounds have different sample rates and are left out: resample them first"
             warnings.warn(words, MotionWarning, stacklevel=2)
             whole = False
-        joined["audio"] = np.concatenate(sounds) if whole else None
+        joined["audio"] = np.concatenate([x for x in sounds if x is not None]) if whole else None
         return replace(self, **joined)
 
     def sound_in_step(self) -> Float[np.ndarray, "N"] | None:
@@ -254,7 +260,7 @@ class Motion:
             raise MotionError(f"{self.name}: a single frame cannot be resampled")
         positions = resample_present(self.positions, self.fps, fps)
         then, now = np.arange(len(self)) / self.fps, np.arange(len(positions)) / fps
-        changed = {"positions": positions, "fps": fps}
+        changed: dict[str, Any] = {"positions": positions, "fps": fps}
         if self.root is not None:
             rows = [np.interp(now, then, column) for column in self.root.T]
             changed["root"] = np.stack(rows, axis=1)
@@ -310,7 +316,7 @@ class Motion:
         write = registry.writers.get(check_ending(path))
         if not overwrite:
             check_no_recording(path)
-        write(self, path)
+        write(self, path)  # type: ignore[misc]  # check_ending knows the endings with a writer
         recordings.note_written(path)
         return path
 
@@ -495,7 +501,7 @@ def _writable(text: str) -> str:
     return text.encode("utf-8", "replace").decode("utf-8")
 
 
-def _whole(sample_rate: object) -> int | None:
+def _whole(sample_rate: Any) -> int | None:
     """A sample rate as an int.  Raises MotionError for what is no whole number."""
     if sample_rate is None:
         return None

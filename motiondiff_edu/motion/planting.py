@@ -146,7 +146,8 @@ def solve_leg(
     front = unit(perpendicular(ahead, line))
     forward = np.einsum("ti,ti->t", side, front)
     side = unit(side + np.maximum(0.02 - forward, 0)[:, None] * front)
-    return hip + along[:, None] * line + height[:, None] * side, hip + distance[:, None] * line
+    knee = hip + along[:, None] * line + height[:, None] * side  # type: ignore[index]  # arrays
+    return knee, hip + distance[:, None] * line
 
 
 def perpendicular(

@@ -1,9 +1,9 @@
-"""Plots for several notebooks: losses, control over time, values with intervals.
+"""Plots for several notebooks: losses, and control over time.
 
 Every line has its own colour and its own dashes.  Notebook: 05
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 from jaxtyping import Float
@@ -84,28 +84,4 @@ def control_curves(
             frameon=False,
             fontsize=SMALL,
         )
-    return fig
-
-
-def intervals(
-    records: Sequence[tuple],
-    xlabel: str,
-    reference: float | None = None,
-    reference_name: str = "data",
-    title: str = "",
-) -> Figure:
-    """Values with their intervals, one row each: records are (name, value, low, high).
-
-    A line marks the reference.
-    """
-    values = [f"{name} {value:.3g} ({low:.3g} to {high:.3g})" for name, value, low, high in records]
-    fig, (axis,) = figure(9, 1.3 + 0.5 * len(records), f"{title or xlabel}: {'; '.join(values)}.")
-    for k, (_name, value, low, high) in enumerate(records):
-        axis.plot([low, high], [k, k], color=OKABE_ITO[0], lw=4, alpha=0.4, solid_capstyle="round")
-        axis.plot(value, k, "o", color=OKABE_ITO[0], ms=9)
-    if reference is not None:
-        axis.axvline(reference, color=OKABE_ITO[1], ls="--", label=reference_name)
-    axis.set_yticks(range(len(records)), [record[0] for record in records])
-    axis.set(xlabel=xlabel, title=title, ylim=(len(records) - 0.5, -0.5))
-    legend(axis)
     return fig

@@ -33,7 +33,7 @@ _RC = {
     "legend.fontsize": SMALL,
     "axes.spines.top": False,
     "axes.spines.right": False,
-    "axes.prop_cycle": matplotlib.cycler(color=OKABE_ITO[:7]),
+    "axes.prop_cycle": matplotlib.cycler(color=OKABE_ITO[:7]),  # type: ignore[attr-defined]  # not in the stubs
     "lines.linewidth": 2.2,
     "axes.grid": True,
     "grid.alpha": 0.25,

@@ -32,7 +32,7 @@ class Action(ipywidgets.HBox):
         self.doing = doing
         self.button = ipywidgets.Button(description=description, button_style="primary")
         self.said = ipywidgets.Label()
-        self._answered = None  # when, by time.monotonic
+        self._answered: float | None = None  # when, by time.monotonic
         self.button.on_click(self._clicked)
         super().__init__([self.button, *beside, self.said])
         self.layout.flex_flow = "row wrap"

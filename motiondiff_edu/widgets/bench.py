@@ -11,12 +11,13 @@ import base64
 import html
 import json
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import traitlets
 from jaxtyping import Bool
 
-from ..editing.repair_bench import RepairBench
+from ..editing.repair_bench import Outcome, RepairBench
 from ..motion.clip import Clip
 from ..motion.skeleton import JOINTS, PARENTS, J
 from ..rollout import AnyWalker
@@ -78,7 +79,7 @@ class Bench(Starting):
         self._truth = clip.world()
         packed = packing.pack([self._truth])
         self.joints, self.roots = packed.joints, packed.roots
-        self.outcome = None
+        self.outcome: Outcome | None = None
         buttons = [
             {"name": name, "missing": self._numbers(name, known)}
             for name, known in (faults or {}).items()
@@ -179,7 +180,9 @@ class Bench(Starting):
 
         Needs no kernel and no network.
         """
-        record = {name: base64.b64encode(getattr(self, name)).decode() for name in _BYTES}
+        record: dict[str, Any] = {
+            name: base64.b64encode(getattr(self, name)).decode() for name in _BYTES
+        }
         record |= {name: getattr(self, name) for name in _STATE} | {"asked": 0, "answered": 0}
         record["scene"] = self.scene | {"kernel": False}
         text = json.dumps(record, allow_nan=False).replace("<", "\\u003c")

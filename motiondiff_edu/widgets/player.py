@@ -18,7 +18,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import TypeVar
+from typing import TypeAlias, TypeVar
 
 import anywidget
 import numpy as np
@@ -41,7 +41,7 @@ GIF_FPS = 50  # browsers slow a GIF down whose pictures stay for less than 20 ms
 _TRAITS = ("joints", "roots", "contacts", "sound", "strips")
 
 Value = TypeVar("Value")
-PerFigure = Value | Sequence[Value | None] | None  # one value for all figures, or a list
+PerFigure: TypeAlias = Value | Sequence[Value | None] | None  # one value for all figures, or a list
 Figures = ArrayLike | Sequence[ArrayLike]  # (T, J, 3), (N, T, J, 3), or a list of (T, J, 3)
 Audio = ArrayLike | bytes | bytearray | memoryview | Soundtrack | None
 

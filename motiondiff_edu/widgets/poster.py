@@ -88,7 +88,7 @@ def floor_lines(camera: body.Camera, reach: int = 5) -> Iterator[tuple[np.ndarra
                 ground = centre + np.array(ends, dtype=float)
                 away = np.linalg.norm(ground.mean(0) - [camera.x, camera.z]) / reach
                 if away < 1:
-                    yield np.insert(ground, 1, 0.0, axis=1), 1 - away**2
+                    yield np.insert(ground, 1, 0.0, axis=1), float(1 - away**2)
 
 
 def _floor_points(xz: np.ndarray) -> np.ndarray:

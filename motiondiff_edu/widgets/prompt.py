@@ -30,8 +30,8 @@ class Prompt(ipywidgets.VBox):
     def __init__(self, mover: Mover, text: str = SENTENCE, seconds: float = SECONDS, seed: int = 0):
         _check_sizes(seconds, seed)  # a slider and a box would put them right silently
         self.mover = mover
-        self.motions = []
-        self._answered = None
+        self.motions: list = []
+        self._answered: tuple[str, float, int] | None = None
         self._note = ""  # what was said of the answered sentence
         wide = ipywidgets.Layout(width="98%")
         self.text = ipywidgets.Text(
@@ -84,7 +84,7 @@ class Prompt(ipywidgets.VBox):
     def _answer(self) -> None:
         text, seconds, seed = asked = self._asked()
         found = self.mover.reader.read(text)
-        self.motions = self.mover.act(
+        self.motions = self.mover.act(  # type: ignore[assignment]  # several: a list
             found, seconds=seconds, samples=ANSWERS, seed=seed, progress=False
         )
         self._answered = asked

@@ -16,7 +16,6 @@ from motiondiff_edu.conditions import audio_files, music
 from motiondiff_edu.conditions.music import (
     SAMPLE_RATE,
     beats_of,
-    crop_seconds,
     frame_times,
     log_mel,
 )
@@ -204,26 +203,6 @@ def test_ten_seconds_are_313_frames_not_320():
     assert times[-1] == 312 * 512 / 16000 and torch.allclose(
         times.diff(), torch.tensor(0.032, dtype=torch.float64)
     )
-
-
-def test_crops_have_one_length_and_tell_their_times():
-    mel = torch.arange(313.0)[:, None].expand(313, 80)
-    for start in (0, 0.01, 1.0, 3.337, 7.6):
-        crop, times = crop_seconds(mel, start, 2.4)
-        assert crop.shape == (75, 80)
-        torch.testing.assert_close(crop[:, 5].double() * 0.032 - start, times)
-        assert 0 <= times[0] < 0.032 and times[-1] < 2.4
-    assert crop_seconds(mel.expand(2, 3, 313, 80), 2.0, 8)[0].shape == (2, 3, 250, 80)
-    for start, seconds in ((-0.1, 2), (8.1, 2), (3, 0.03)):
-        with pytest.raises(ValueError, match="not within this song of 9.98 s"):
-            crop_seconds(mel, start, seconds)
-
-
-def test_a_crop_up_to_the_very_end_is_there_for_any_length():
-    for n in range(40_000, 41_024, 37):
-        mel, end = log_mel(torch.zeros(n), 16_000), n / SAMPLE_RATE
-        crop, times = crop_seconds(mel, end - 1.5, 1.5)
-        assert len(crop) == 46 and times[-1] <= 1.5
 
 
 @pytest.mark.parametrize("kind", ["noise", "tone", "kick"])

@@ -197,6 +197,14 @@ def test_pages_of_a_folder(executed, tmp_path):
     assert first.count("<li>") == 2 and "data:image/png" in first and "<svg" in first
 
 
+def test_the_first_page_leads_to_the_api_where_that_was_written(executed, tmp_path):
+    site, link = tmp_path / "site", 'href="api/index.html"'
+    assert link not in pages(executed, site)[-1].read_text()
+    (site / "api").mkdir()
+    (site / "api" / "index.html").write_text("<h1>API</h1>")
+    assert link in pages(executed, site)[-1].read_text()
+
+
 def test_no_page_asks_for_anything_from_elsewhere(executed, tmp_path):
     for path in pages(executed, tmp_path / "site"):
         page = path.read_text()

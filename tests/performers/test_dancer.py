@@ -9,6 +9,7 @@ import pytest
 import torch
 from devices import devices_of
 from synthetic_dance import windows
+from torch import nn
 
 from motiondiff_edu import ddpm
 from motiondiff_edu.baselines.regression import regression_loss
@@ -73,6 +74,16 @@ def test_a_schedule_with_fewer_steps_than_the_usual_sampler_takes_is_danced_with
     assert not torch.equal(usual, one.dance_mel(mel(), 30, generator=seeded(), steps=11))
     with pytest.raises(ValueError, match="between 1 and 12"):
         one.dance_mel(mel(), 30, steps=0)
+
+
+def test_a_network_with_dropout_dances_without_it_and_stays_in_training():
+    one = dancer()
+    x_s, s = torch.randn(2, 30, 63, generator=seeded()), torch.full((2,), 5)
+    one.model.out = nn.Sequential(nn.Dropout(0.5), one.model.out).eval()
+    wanted = one.denoiser(mel(), 30, fast=False)(x_s, s)
+    one.model.train()
+    torch.testing.assert_close(one.denoiser(mel(), 30, fast=False)(x_s, s), wanted)
+    assert one.model.training and one.model.out[0].training
 
 
 @pytest.mark.parametrize("steps", [6, None])

@@ -22,6 +22,7 @@ from motiondiff_edu.performers.joined import (
     OFF_FLOOR,
     UNLIKE,
     Start,
+    blended,
     change_of,
     in_words,
     joined,
@@ -84,6 +85,14 @@ def test_a_usual_walk_keeps_its_body_and_stands_and_nothing_is_said(walker, usua
     assert np.abs(bone_lengths(plain.positions) - lengths).max() > 2e-3
     assert sliding(more) < 0.6 * sliding(plain)
     assert np.linalg.norm(more.positions - plain.positions, axis=-1).mean() < 0.01
+
+
+def test_what_is_given_is_marked_up_to_its_last_frame(usual):
+    start = Start.of(usual, AHEAD[:5], 10)
+    whole, known, _ = blended(start, start.past[:5])
+    given = (whole[:, None] == usual.positions[-1]).all((1, 2, 3)).nonzero()[0]
+    assert given.tolist() == [len(whole) - 6]  # the last given frame, and then 5 new ones
+    assert known[:-5].all() and not known[-5:].any()
 
 
 def test_an_unusual_past_is_named_and_joined_without_a_jump(walker, unusual, monkeypatch):

@@ -138,6 +138,18 @@ def test_a_walker_moved_is_a_copy_that_walks_alike():
     torch.testing.assert_close(generate(moved, past, control), generate(walker, past, control))
 
 
+def test_a_network_with_dropout_samples_without_it_and_stays_in_training():
+    walker, (past, control) = tiny_walker(), inputs(frames=T_P)
+    drop = walker.model.decoder[0].drop
+    drop.p = 0.5
+    x_s, s = torch.randn(2, T_P, 63), torch.full((2,), 3)
+    wanted = walker.denoiser(past, control, fast=False)(x_s, s)
+    walker.model.train()
+    assert not torch.allclose(walker.model(x_s, s, past, control), wanted, atol=1e-3)
+    torch.testing.assert_close(walker.denoiser(past, control, fast=False)(x_s, s), wanted)
+    assert walker.model.training and drop.training
+
+
 def places(walker: Walker) -> set[str]:
     """The devices of all that a performer needs."""
     return devices_of(walker.model, walker.pose_scaler, walker.control_scaler)

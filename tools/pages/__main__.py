@@ -40,6 +40,7 @@ OPENING = (
     "These pages are the executed notebooks. They need no network; the notebooks themselves "
     "(<code>make lab</code>) have the exercises and all controls.</p>"
 )
+API = '<p>The library: <a href="api/index.html">its modules, functions and classes</a>.</p>'
 
 
 def write(path: Path, title: str, body: str, links: str) -> None:
@@ -83,7 +84,8 @@ def pages(executed: Path, target: Path) -> list[Path]:
         copy_pictures(body, target / "docs")
     written.append(target / "index.html")
     needs = "<h2>What needs what</h2>" + index.graph(entries)
-    write(written[-1], "motiondiff_edu", OPENING + index.cards(entries) + needs, "")
+    opening = OPENING + (API if (target / "api" / "index.html").is_file() else "")
+    write(written[-1], "motiondiff_edu", opening + index.cards(entries) + needs, "")
     return written
 
 
@@ -101,6 +103,9 @@ def main() -> None:
     parser.add_argument("executed", type=Path)
     parser.add_argument("target", type=Path)
     chosen = parser.parse_args()
+    from . import api  # pdoc, which only this needs
+
+    api.write(chosen.target / "api")
     written = pages(chosen.executed, chosen.target)
     size = sum(path.stat().st_size for path in written) / 1e6
     print(f"{len(written)} pages, {size:.0f} MB: open {chosen.target / 'index.html'}")

@@ -7,7 +7,7 @@ from ._compare import compare
 from ._drawn import tensors
 from ._report import check, expect
 from .nb01 import in_the_mirror
-from .zoo import several
+from .zoo import Wrong, several
 from .zoo.nb16 import MISTAKES
 
 
@@ -79,7 +79,7 @@ def mirrored(mine):
         return lambda positions: answer(positions, SENTENCES[len(positions) - 3])[0]
 
     mistakes = MISTAKES["mirrored"].items()
-    of_motion = {hint: tuple(map(seen, several(wrong))) for hint, wrong in mistakes}
+    of_motion: Wrong = {hint: tuple(map(seen, several(wrong))) for hint, wrong in mistakes}
     compare(
         motion,
         lambda positions: in_the_mirror(positions, np.zeros((1, 3)))[0],

@@ -116,7 +116,7 @@ def hierarchy(
 ) -> tuple[tuple[str, ...], np.ndarray, Float[np.ndarray, "N 3"]]:
     """Names, parents and offsets with the helper joints inserted, each before its child."""
     names = []
-    above = {}
+    above: dict[str, str | None] = {}
     table = []
     helper_of = {child: helper for helper, (_, children) in HELPERS.items() for child in children}
     for joint, name in enumerate(JOINTS):
@@ -128,7 +128,7 @@ def hierarchy(
         names.append(name)
         above[name] = helper or (JOINTS[PARENTS[joint]] if joint else None)
         table.append(offsets[joint])
-    parents = np.array([names.index(above[name]) if above[name] else -1 for name in names])
+    parents = np.array([names.index(at) if (at := above[name]) else -1 for name in names])
     return tuple(names), parents, np.array(table)
 
 

@@ -127,7 +127,7 @@ def read_bvh(path: str | Path, file_fps: float | int | None = None) -> Bvh:
     nodes = read_nodes(found, path)
     declared, declared_line, time, time_line, first = header(lines, motion, path)
     seconds = frame_time(time, time_line, path, None if file_fps is None else float(file_fps))
-    columns = [(node.name, channel) for node in nodes for channel in node.channels]
+    columns = [(node.name, channel) for node in nodes for channel in node.channels or ()]
     frames = frame_rows(lines, first, declared, columns, path, declared_line)
     return assemble(nodes, frames, seconds, Path(path).stem or Path(path).name)
 
@@ -140,7 +140,7 @@ def assemble(
         names=tuple(node.name for node in nodes),
         parents=np.array([node.parent for node in nodes]),
         offsets=np.array([node.offset for node in nodes]),
-        channels=tuple(node.channels for node in nodes),
+        channels=tuple(node.channels or () for node in nodes),
         frames=frames,
         frame_time=seconds,
         is_end=np.array([node.end for node in nodes]),

@@ -1,5 +1,7 @@
 """Wrong answers to the exercises of notebook 00."""
 
+from typing import Any
+
 import numpy as np
 
 
@@ -34,17 +36,12 @@ def last_new_row(past_control, new, T_h):
     return np.concatenate([past_control[-T_h:-1], new[-1:], new])
 
 
-def first_kept(past_control, new, T_h):
-    """The right past, its first rows unchanged."""
-    return np.concatenate([first_rows(past_control, new, T_h)[:T_h], new])
-
-
 def whole_past(past_control, new, T_h):
     """All of the past, with the right last row."""
     return np.concatenate([past_control[:-1], new[:1], new])
 
 
-MISTAKES = {
+MISTAKES: dict[str, dict[str, Any]] = {
     "splice_control": {
         "the last row of the past still repeats the row before it; it should lead into the first "
         "new frame": lambda past, new, T_h: np.concatenate([past[-T_h:], new]),

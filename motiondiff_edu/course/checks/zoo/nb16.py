@@ -1,5 +1,7 @@
 """Wrong answers to the exercises of notebook 16."""
 
+from typing import Any
+
 import torch
 
 from ....motion.skeleton import MIRROR
@@ -39,7 +41,7 @@ def positions_in_place(positions, words):
     return positions, _mirrored(positions, words)[1]
 
 
-MISTAKES = {
+MISTAKES: dict[str, dict[str, Any]] = {
     "bag": {
         "padding is in the mean; leave out what the mask does not have": lambda tokens, mask: (
             tokens.mean(1)
