@@ -110,3 +110,6 @@ def test_frames_with_a_known_joint_and_ends_that_are_not_given_stay():
     part = whole_frames(list(range(20)))
     part[:, 0] = True
     assert np.array_equal(blend_seams(made, part, 20), made)
+    beside = whole_frames(list(range(20)))
+    beside[19, 5:] = False  # the frame before the gap is not given as a whole
+    assert np.array_equal(blend_seams(made, beside, 20), made)

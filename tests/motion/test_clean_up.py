@@ -8,6 +8,7 @@ from data_synth.music import GENRES, compose
 from data_synth.walking import walk
 from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.metrics.bone_lengths import bone_lengths
+from motiondiff_edu.metrics.seams import seam_step
 from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.motion.cleanup import Body, clean_up, floor_under
 from motiondiff_edu.motion.cleanup.feet import FARTHEST
@@ -92,6 +93,12 @@ def test_a_clean_walk_hardly_changes(clean):
     """A toe is held from when it lands until it leaves: that is some centimetres of its roll."""
     moved = np.linalg.norm(clean_up(clean, FPS, half_known(clean)) - clean, axis=-1)
     assert moved.mean() < 0.005 and moved.max() < 0.06
+
+
+def test_a_continuation_that_jumps_is_joined(clean):
+    jumps = np.concatenate([clean[:20], clean[20:] + [0.3, 0.0, 0.0]])
+    made = clean_up(jumps, FPS, half_known(clean))
+    assert seam_step(jumps, 20) > 0.2 and seam_step(made, 20) < 0.03
 
 
 def test_known_joints_stay_and_give_the_lengths(clean, shaken):
