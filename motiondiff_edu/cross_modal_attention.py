@@ -215,6 +215,8 @@ class Block(nn.Module):
         normed = self.norm_self(x)
         x = x + self.drop(self.self_attention(normed, normed, bias))
         if self.with_context:
+            if context is None:
+                raise ValueError("this block reads a context: pass its keys and values")
             x = x + self.drop(self.cross_attention.read(self.norm_cross(x), context, context_bias))
         return x + self.drop(self.ff(self.norm_ff(x)))
 

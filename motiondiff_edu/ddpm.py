@@ -291,9 +291,12 @@ def p_sample(
     Source: MoDiff eq. 11; MoFusion eq. 3.
     """
     mean = p_mean(x_s, s, eps_hat, schedule)
-    now, last = schedule.at(s, x_s), s == 1
-    sigma = math.sqrt(now.beta if _is_beta(variance) else now.beta_tilde)
-    return mean if last else mean + sigma * noise
+    now, beta = schedule.at(s, x_s), _is_beta(variance)
+    if s == 1:
+        return mean
+    if noise is None:
+        raise ValueError(f"step {s} adds noise: pass it as `noise`")
+    return mean + math.sqrt(now.beta if beta else now.beta_tilde) * noise
 
 
 @torch.no_grad()

@@ -10,8 +10,9 @@ Source: MoDiff III-F, IV-A, Fig. 2.  Notebook: 07
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass, fields, replace
+from typing import Any
 
 import torch
 from jaxtyping import Float, Int
@@ -190,7 +191,8 @@ class MoDiff(nn.Module):
             [self.motion_encoder(motion), self.control_encoder(control)], dim=1
         )  # (B, M, width)
         tokens = self.memory_norm(self.cross_encoder(both))
-        layers = tuple(block.cross_attention.keys_and_values(tokens) for block in self.decoder)
+        blocks: Iterable[Any] = self.decoder  # torch's stubs say of a list that it holds Modules
+        layers = tuple(block.cross_attention.keys_and_values(tokens) for block in blocks)
         every = torch.arange(self.config.S + 1, device=tokens.device)
         steps = self.step_in(step_embedding(every, self.config.width))
         return Memory(steps, layers, self.self_bias(), self.memory_bias())

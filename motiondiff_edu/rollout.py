@@ -10,7 +10,7 @@ Source: MoDiff III-C, Alg. 2.  Notebook: 08
 
 import math
 import warnings
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
@@ -117,8 +117,6 @@ def generate(
     steps: int | None = None,
     keep: int = 1,
     hold: bool = True,
-    size: float = 1.0,
-    watch: Callable[[Iterable[Frame]], Iterable[Frame]] = iter,
 ) -> Float[Tensor, "*B n D"]:
     """Continue `past` (root-frame poses, metres) under `control` (m/s, m/s, rad/s).
 
@@ -126,8 +124,7 @@ def generate(
 
     Past and control are tensors or arrays of numpy, with or without a batch axis. Rows 0..T_h-1 of
     the control belong to the past. steps=None is DDPM with all S steps, a number is
-    DDIM with that many. `watch` gets the loop over the frames, and shows how far it is.
-    `size` of the figure, over the course's, is for messages: they have its own speeds.
+    DDIM with that many.
     Raises ValueError if past and control do not fit the walker or contain NaN, and for a control
     that leaves the range of the training data by over half its width. Warns where it leaves it by
     over a tenth.
@@ -162,7 +159,7 @@ def generate(
         )
     if not (torch.isfinite(past).all() and torch.isfinite(control).all()):
         raise ValueError("past or control contains NaN or infinity; fill the holes first")
-    check_range(control, T_h, getattr(walker, "card", {}).get("control_range"), size, hold)
+    check_range(control, T_h, getattr(walker, "card", {}).get("control_range"), hold=hold)
     generator = generator or torch.Generator().manual_seed(seed)
     past, control = (x.float().to(walker.pose_scaler.mean.device) for x in (past, control))
     poses = walker.pose_scaler.transform(past)
@@ -171,7 +168,7 @@ def generate(
     loop = rollout_steps(
         sample, poses, velocities, frames, T_p, generator=generator, keep=keep, hold=hold
     )
-    new = walker.pose_scaler.inverse(torch.stack([frame.pose for frame in watch(loop)], dim=1))
+    new = walker.pose_scaler.inverse(torch.stack([frame.pose for frame in loop], dim=1))
     return new[0] if single else new
 
 

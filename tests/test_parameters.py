@@ -17,12 +17,12 @@ MOST = 8
 OPEN = {
     "_repr_mimebundle_": "Jupyter calls it with keywords of its own",
     "course/checks/_report.py answer": "it wraps a student's function, whatever that takes",
-    "performers/performer.py called": "it calls a decorated function, whatever that takes",
     "widgets/explore.py explore": "the keywords are the parameters of the function that is drawn",
     "widgets/explore.py refresh": "as `explore`",
     "widgets/controls.py steering": "the keywords are those of the function that is steered",
-    "results/walks/ladder.py left_out": "the keywords are fields of a Recipe, as in `replace`",
-    "results/walks/ladder.py added": "as `left_out`",
+    "results/walks/ladder.py out": "the keywords are fields of a Recipe, as in `replace`",
+    "results/walks/ladder.py into": "as `out`",
+    "results/dances/budget.py differs": "as `out`, of a DanceRecipe",
     "tools/mutants.py _with": "the keywords are fields of a node, as in `replace`",
 }
 

@@ -5,9 +5,10 @@ A new option with a number needs a line in CHECKS.
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from .._files import check_writable
 from ..motion import registry
@@ -23,7 +24,7 @@ from ..motion.checks import (
 )
 
 # an option of any verb, as it is called in Python -> its check
-CHECKS = {
+CHECKS: dict[str, Callable[[Any], object]] = {
     "every": partial(checked_count, name="--every"),
     "file_fps": partial(checked_rate, name="--file-fps"),
     "guidance": checked_guidance,

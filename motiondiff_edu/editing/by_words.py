@@ -44,7 +44,6 @@ def edit_by_words(
     *,
     strength: float = STRENGTH,
     samples: int = 1,
-    steps: int = STEPS,
     generator: Generators | None = None,
     watch: Watch = iter,
 ) -> Float[np.ndarray, "samples T 21 3"]:
@@ -54,7 +53,6 @@ def edit_by_words(
               pelvis is known in a frame and the next, the root keeps its velocity, too. Default:
               nothing is masked
     strength  above 0, up to 1; with 1 nothing but the known part is left of the motion
-    steps     of DDIM for the whole way; a smaller strength takes fewer
     watch     gets each sampling loop, and shows how far it is
     Without a `generator` the seed is 0. The first frame stays where it was, facing the same way.
     While the pelvis is known from the first frame on, known joints come back bit by bit.
@@ -65,7 +63,7 @@ def edit_by_words(
     positions, mask = checked_given(positions, nothing if known is None else known)
     if not np.isfinite(positions).all():
         raise ValueError("positions contain NaN or infinity: fill or cut these frames first")
-    ways = visited(mover.schedule.S, steps, strength)
+    ways = visited(mover.schedule.S, STEPS, strength)
     texts = mover.reader.encoded([mover.reader.read(text).words] * samples)
     generator = generator or torch.Generator().manual_seed(0)
     size = leg_size(positions)  # the mover knows figures of the course's size
@@ -74,7 +72,7 @@ def edit_by_words(
     start = q_sample(given, ways[0], schedule, draw(given, generator))
     plan = None
     if mover.can_plan:
-        plan = _plan(mover, positions / size, mask, texts, steps, generator, watch)
+        plan = _plan(mover, positions / size, mask, texts, generator, watch)
     denoise = mover.denoiser(texts, len(positions), plan=plan)
     if held.any():
         denoise = blended(denoise, schedule, given, held, fade=FADE)
@@ -92,7 +90,6 @@ def _plan(
     positions: Float[np.ndarray, "T 21 3"],
     known: Bool[np.ndarray, "T 21"],
     texts: Texts,
-    steps: int,
     generator: Generators,
     watch: Watch = iter,
 ) -> Float[Tensor, "samples T 22"]:
@@ -102,7 +99,7 @@ def _plan(
     held = held.to(mover.device).expand_as(given)
     loop = inpaint_steps(
         mover.plan_denoiser(texts, len(positions)), draw(given, generator), mover.schedule, given,
-        held, steps=min(steps, mover.schedule.S), eta=ETA, generator=generator,
+        held, steps=min(STEPS, mover.schedule.S), eta=ETA, generator=generator,
     )  # fmt: skip
     return timeline.tidied(mover.plan_scaler.inverse(final(watch(loop)).x_s))
 

@@ -187,7 +187,7 @@ class Motion:
         for name in ("root", "contacts"):
             if getattr(self, name) is not None:
                 cut[name] = getattr(self, name)[first:last]
-        if self.audio is not None:
+        if self.audio is not None and self.sample_rate is not None:
             begin, end = (round(t / self.fps * self.sample_rate) for t in (first, last))
             cut["audio"] = self.audio[begin:end] if begin < len(self.audio) else None
         return replace(self, **cut)
@@ -240,7 +240,7 @@ class Motion:
 
     def sound_in_step(self) -> Float[np.ndarray, "N"] | None:
         """The sound, cut or padded with silence to the length of the motion."""
-        if self.audio is None:
+        if self.audio is None or self.sample_rate is None:
             return None
         length = round(self.seconds * self.sample_rate)
         return np.pad(self.audio[:length], (0, max(0, length - len(self.audio))))
@@ -322,7 +322,7 @@ class Motion:
 
     def __repr__(self) -> str:
         has = [f"{len(self)} frames at {self.fps:g} frames/s", f"{len(self.skeleton)} joints"]
-        if self.audio is not None:
+        if self.audio is not None and self.sample_rate is not None:
             has.append(f"{len(self.audio) / self.sample_rate:.1f} s of sound")
         missing = int((~self.known).sum())
         if missing:

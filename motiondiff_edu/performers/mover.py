@@ -157,7 +157,6 @@ class Mover(Performer):
         *,
         generator: Generators | None = None,
         steps: int | None = STEPS,
-        eta: float = ETA,
         guidance: float = 1.0,
         start: Float[Tensor, "B T 22"] | None = None,
         watch: Watch = iter,
@@ -168,7 +167,7 @@ class Mover(Performer):
         """
         denoise = self.plan_denoiser(ids, frames, guidance)
         x_S = self._noise((len(ids), frames, timeline.D), generator, start)
-        made = sampled(denoise, x_S, self.schedule, steps, eta, generator, watch)
+        made = sampled(denoise, x_S, self.schedule, steps, ETA, generator, watch)
         return timeline.tidied(self.plan_scaler.inverse(made))
 
     def act(
@@ -231,7 +230,6 @@ class Mover(Performer):
         *,
         generator: Generators | None = None,
         steps: int | None = STEPS,
-        eta: float = ETA,
         guidance: float = 1.0,
         start: Float[Tensor, "B T 66"] | None = None,
         plan: Float[Tensor, "#B T 22"] | Float[np.ndarray, "#B T 22"] | None = None,
@@ -245,13 +243,13 @@ class Mover(Performer):
         Raises ValueError for a plan of another length or shape.
         """
         if plan is None and self.can_plan:
-            how = {"generator": generator, "steps": steps, "eta": eta, "guidance": guidance}
+            how = {"generator": generator, "steps": steps, "guidance": guidance}
             plan = self.plans(ids, frames, watch=watch, **how)
         if plan is not None and (length := np.shape(plan)[-2]) != frames:
             raise ValueError(f"plan: it has {length} frames, and the motion {frames}")
         denoise = self.denoiser(ids, frames, guidance, plan)
         x_S = self._noise((len(ids), frames, D), generator, start)
-        x0 = sampled(denoise, x_S, self.schedule, steps, eta, generator, watch)
+        x0 = sampled(denoise, x_S, self.schedule, steps, ETA, generator, watch)
         return self.positions_of(x0)
 
     def _noise(

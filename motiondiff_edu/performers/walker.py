@@ -101,15 +101,18 @@ class Walker(Performer):
         start = Start.of(resized(motion.resampled(FPS), 1 / size), ahead, T_h)
         past = torch.from_numpy(start.past).float().flatten(1)
         steer = torch.from_numpy(start.control).float()
-        each = (x.expand(count, -1, -1) for x in (past, steer))
-        new = rollout.generate(
-            self,
-            *each,
+        rollout.check_range(steer[None], T_h, self.card.get("control_range"), size)
+        poses, velocities = self._in_units(past, steer, count)
+        loop = rollout.rollout_steps(
+            self.window_sampler(steps),
+            poses,
+            velocities,
+            len(ahead),
+            self.config.T_p,
             generator=generators(seed, count),
-            steps=steps,
-            size=size,
-            watch=bar("walking", len(ahead), progress),
         )
+        loop = bar("walking", len(ahead), progress)(loop)
+        new = self.pose_scaler.inverse(torch.stack([frame.pose for frame in loop], dim=1))
         both = [joined(start, one) for one in new.double().cpu().numpy().reshape(count, -1, J, 3)]
         unlike, height = unlike_training(self.pose_scaler, past), motion.positions[-1, :, 1].min()
         change = change_of(start.control[T_h - 2 :])
@@ -119,6 +122,15 @@ class Walker(Performer):
         path, name = start.path[T_h:], f"{motion.name}, continued"
         made = [resized(Motion(world, FPS, root=path, source=name), size) for world, _ in both]
         return made if samples > 1 else made[0]
+
+    def _in_units(
+        self, past: Float[Tensor, "T_h D"], control: Float[Tensor, "T C"], samples: int
+    ) -> tuple[Float[Tensor, "B T_h D"], Float[Tensor, "B T C"]]:
+        """Past and control in the network's units, on its device, once for each sample."""
+        device = self.pose_scaler.mean.device
+        poses = self.pose_scaler.transform(past.to(device))
+        velocities = self.control_scaler.transform(control.to(device))
+        return poses.expand(samples, -1, -1), velocities.expand(samples, -1, -1)
 
     def denoiser(self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]) -> Denoiser:
         """`denoise(x_s, s) -> eps_hat` for this past and control, in the network's units.

@@ -129,15 +129,24 @@ def buildable(names: list[str]) -> list[str]:
     return [name for name in names if name not in need]
 
 
-def build(name: str, run: Path, out: Path, device: str | None = None, **given) -> Path:
+def build(
+    name: str,
+    run: Path,
+    out: Path,
+    *,
+    device: str | None = None,
+    data: Path | None = None,
+    clip: str | None = None,
+    ear: TrainedEar | None = None,
+) -> Path:
     """Train a recipe by its name, continuing `run` where there is one, and save it as `out`.
 
-    `device` and `given` are as in `trained`. A judge is saved in a folder of its own beside `out`.
+    The rest is as in `trained`. A judge is saved in a folder of its own beside `out`.
     """
     if name in JUDGES:
         judge = train_judge(JUDGES[name], run, say, device)
         return save_judge(judge, out.parent / "judges" / out.name)
-    made = trained(name, run, device=device, **given)
+    made = trained(name, run, device=device, data=data, clip=clip, ear=ear)
     return save(made, out, bits=8 if name in EIGHT_BITS else 16)
 
 

@@ -27,7 +27,7 @@ from ..performers.ear import Ear, EarConfig, EarOutput, rescaled
 from ..performers.hearing_mofusion import WithEar
 from ..training import LossFn
 from .songs import HeardSongs, songs_as_mel
-from .train_recipe import Provenance, train_recipe
+from .train_recipe import Provenance, on_device, train_recipe
 
 
 @dataclass(frozen=True)
@@ -172,12 +172,11 @@ def train_ear(
     trained, card = train_recipe(
         recipe,
         run_file,
-        Ear(recipe.config),
+        on_device(Ear(recipe.config), device),
         loss_of_ear(recipe, songs),
         Provenance(about, {"songs": len(songs)}, "data_synth.music, synthetic"),
         warmup=300,
         log=log,
-        device=device,
     )
     kept = ("parameters", "songs", "minutes", "final_loss")
     return TrainedEar(trained, songs.scaler, {name: card[name] for name in kept})

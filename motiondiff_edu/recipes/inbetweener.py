@@ -38,7 +38,7 @@ from .drawn_masks import drawn_masks, uniform
 from .mofusion_loss import batch_loss, weighted_loss
 from .recordings import CREDIT, Recorded, training_recordings
 from .train_dancer import bones_of, digest
-from .train_recipe import Provenance, train_recipe
+from .train_recipe import Provenance, on_device, train_recipe
 
 
 @dataclass(frozen=True)
@@ -187,7 +187,7 @@ def train_inbetweener(
 ) -> Inbetweener:
     """Train by a recipe, or continue the run in `run_file`; the weights are averaged ones.
 
-    `device` is as in `train_recipe`.
+    `device`: as in `train_recipe.on_device`.
     Raises ValueError when the run in `run_file` was begun with other settings.
     """
     windows = training_windows(recipe) if windows is None else windows
@@ -202,12 +202,11 @@ def train_inbetweener(
     trained, card = train_recipe(
         recipe,
         run_file,
-        model,
+        on_device(model, device),
         loss_of(recipe, windows, schedule),
         Provenance(about, facts, source),
         warmup=300,
         log=log,
-        device=device,
     )
     return Inbetweener(trained, schedule, windows.motion_scaler, card)
 

@@ -17,7 +17,7 @@ from ..performers.described_windows import Chosen
 from ..pretrained.judges import Judge
 from ..training import LossFn
 from .train_mover import DescribedData, Truths, described, digest
-from .train_recipe import Provenance, train_recipe
+from .train_recipe import Provenance, on_device, train_recipe
 
 SEEDS = (0, 1, 2)
 
@@ -61,12 +61,11 @@ def train_judge(recipe: JudgeRecipe, run_file: Path, log=print, device: str | No
     trained, card = train_recipe(
         recipe,
         run_file,
-        space,
+        on_device(space, device),
         loss_of(recipe, data),
         Provenance({"data": digest(windows)}, {"clips": len(windows)}, "data_synth.actions"),
         warmup=100,
         log=log,
-        device=device,
     )
     return Judge(trained, windows.scaler, windows.words, card)
 

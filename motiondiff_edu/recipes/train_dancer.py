@@ -26,7 +26,7 @@ from .dancers import DanceRecipe, SongRecipe
 from .ear import TrainedEar, ear_of
 from .mofusion_loss import batch_loss, weighted_loss
 from .songs import songs_as_mel
-from .train_recipe import Provenance, train_recipe
+from .train_recipe import Provenance, on_device, train_recipe
 
 ONE_BODY = 0.1  # cm: bones that differ by less are the same
 
@@ -77,7 +77,7 @@ def train_dancer(
 ) -> Dancer:
     """Train by a recipe, or continue the run in `run_file`; return a dancer with averaged weights.
 
-    `device` is as in `train_recipe`.
+    `device`: as in `train_recipe.on_device`.
     `ear`: a trained one for a recipe with an ear; without it, one is trained first.
     Raises ValueError when the run in `run_file` was begun with other settings, or `ear` is not of
     the recipe's kind.
@@ -102,12 +102,11 @@ def train_dancer(
     trained, card = train_recipe(
         recipe,
         run_file,
-        model,
+        on_device(model, device),
         loss_of(recipe, windows, schedule),
         Provenance(about, facts, f"data_synth.{made_of}, synthetic"),
         warmup=300,
         log=log,
-        device=device,
     )
     return Dancer(trained, schedule, windows.motion_scaler, windows.mel_scaler, card)
 

@@ -34,7 +34,7 @@ from ..performers.text_mofusion import Texts
 from ..training import LossFn
 from .mofusion_loss import batch_loss, weighted_loss
 from .movers import MoverRecipe
-from .train_recipe import Provenance, final_loss, train_recipe
+from .train_recipe import Provenance, final_loss, on_device, train_recipe
 
 WARMUP = 300  # steps
 
@@ -119,7 +119,7 @@ def train_mover(
 ) -> Mover:
     """Train by a recipe, or continue the run in `run_file`; return a mover with averaged weights.
 
-    `device` is as in `train_recipe`.
+    `device`: as in `train_recipe.on_device`.
     With `plan_steps`, the network for timelines is then trained further (`train_planner`).
 
     A network for motions alone (`config.D` = 66) is not shown the timelines of the windows.
@@ -159,7 +159,8 @@ def train_mover(
     texts_of = texts_by(clip, windows) if clip else texts_as_ids
     loss_fn = loss_of(recipe, windows, schedule, texts_of)
     both = replace(recipe, plan_steps=0)
-    how = {"warmup": WARMUP, "log": log, "device": device}
+    how = {"warmup": WARMUP, "log": log}
+    model = on_device(model, device)
     trained, card = train_recipe(both, run_file, model, loss_fn, provenance, **how)
     if recipe.plan_steps:
         plan_loss = plan_loss_of(recipe, windows, schedule, texts_of)
@@ -195,8 +196,8 @@ def train_planner(
     own = replace(provenance, about=provenance.about | begins)
     file = run_file.with_name(f"{run_file.stem}-planner{run_file.suffix}")
     planner = copy.deepcopy(model.planner).requires_grad_(True)
-    how = {"warmup": WARMUP, "log": log, "device": device}
-    trained, card = train_recipe(alone, file, planner, loss_fn, own, **how)
+    how = {"warmup": WARMUP, "log": log}
+    trained, card = train_recipe(alone, file, on_device(planner, device), loss_fn, own, **how)
     model.planner.load_state_dict(trained.state_dict())
     return {name: card[name] for name in ("minutes", "sittings", "final_loss")} | begins
 

@@ -51,19 +51,16 @@ def train_recipe(
     warmup: int,
     log: Callable[[str], object],
     before: Callable[[int], object] | None = None,
-    device: str | None = None,
 ) -> tuple[nn.Module, dict]:
     """Train (or continue) a fresh network; `run_file` holds the run.
 
-    Returns the averaged network, and its card.
+    It is trained where it is (`on_device`). Returns the averaged network, on the CPU, and its card.
 
     `warmup`: steps in which the rate rises, at most a quarter of all.
     `before`: as in `train_steps`.
-    `device`: where it is trained; by default on a GPU, if there is one.
     Raises ValueError when the run in `run_file` was begun with other settings.
     """
-    device = device or ("cuda" if torch.cuda.is_available() else "cpu")
-    model = model.to(device)
+    device = next(model.parameters()).device.type
     optimizer = optimizer_for(model, recipe.optimizer)
     state = TrainState.start(model, recipe.seed, optimizer, recipe.decay)
     about = asdict(recipe) | provenance.about
@@ -90,6 +87,11 @@ def train_recipe(
         "final_loss": final_loss(recipe, loss_fn, state.average),
     }  # `make results` adds what it measures
     return state.average.cpu().eval(), card
+
+
+def on_device(model: nn.Module, device: str | None) -> nn.Module:
+    """The network where it is trained: by default on a GPU, if there is one."""
+    return model.to(device or ("cuda" if torch.cuda.is_available() else "cpu"))
 
 
 def run_to_end(
@@ -143,9 +145,7 @@ def where(device: str) -> dict:
     return {
         "commit": commit_of(Path(__file__).parents[2]),
         "date": datetime.date.today().isoformat(),
-        "machine": torch.cuda.get_device_name()
-        if device.startswith("cuda")
-        else platform.machine(),
+        "machine": torch.cuda.get_device_name() if device == "cuda" else platform.machine(),
         "threads": torch.get_num_threads(),
         "torch": torch.__version__,
     }

@@ -30,7 +30,7 @@ from ..performers.networks import network
 from ..performers.walker import Walker
 from ..performers.windows import Windows, typical_change
 from ..training import LossFn
-from .train_recipe import Provenance, train_recipe
+from .train_recipe import Provenance, on_device, train_recipe
 from .walkers import LossWeights, Recipe
 
 
@@ -68,7 +68,7 @@ def train(
 
     Returns the averaged network as a walker.
     `first` is the trained network that the recipe begins with, if it names one.
-    `device` is as in `train_recipe`.
+    `device`: as in `train_recipe.on_device`.
 
     Raises ValueError when the run in `run_file` was begun with other settings, and when `first` is
     missing or not wanted.
@@ -90,13 +90,12 @@ def train(
     trained, card = train_recipe(
         recipe,
         run_file,
-        begun.model,
+        on_device(begun.model, device),
         begun.loss_fn,
         Provenance(about, facts, source),
         warmup=500,
         log=log,
         before=begun.dropout.now if begun.dropout else None,
-        device=device,
     )
     return begun.walker(trained, card)
 

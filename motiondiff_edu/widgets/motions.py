@@ -64,6 +64,7 @@ def _distinct_labels(motions: Sequence[Motion]) -> list[str]:
 
 def _as_long(sounding: Motion, longest: Motion) -> Float[np.ndarray, "N"]:
     """The sound, cut or padded with silence to the length of the longest motion."""
+    assert sounding.sample_rate is not None  # a motion with sound has it
     count = round(longest.seconds * sounding.sample_rate)
     sound = sounding.sound_in_step()[:count]
     return np.pad(sound, (0, count - len(sound)))

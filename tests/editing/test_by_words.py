@@ -9,6 +9,7 @@ from data_synth.actions import Act, Phrase, act_out, clips
 from motiondiff_edu.beyond import timeline
 from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.ddpm import at
+from motiondiff_edu.editing import by_words
 from motiondiff_edu.editing.by_words import (
     _plan,
     at_the_start_of,
@@ -21,6 +22,11 @@ from motiondiff_edu.editing.masks import UPPER, body_part
 from motiondiff_edu.motion.moving_frame import to_features, to_positions
 from motiondiff_edu.motion.skeleton import HIPS, joint_index
 from motiondiff_edu.performers.mover import Mover
+
+
+@pytest.fixture(autouse=True)
+def few_steps(monkeypatch):
+    monkeypatch.setattr(by_words, "STEPS", 30)
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +53,7 @@ class Exact(Mover):
 def test_the_less_noise_the_more_of_the_motion_stays(mover, positions):
     exact = Exact(mover.model, mover.schedule, mover.motion_scaler)
     errors = [
-        np.abs(edit_by_words(exact, positions, "walks", strength=s, steps=30)[0] - positions).mean()
+        np.abs(edit_by_words(exact, positions, "walks", strength=s)[0] - positions).mean()
         for s in (0.04, 0.4, 1.0)
     ]
     assert errors[0] < 0.5 * errors[1] < errors[1] < errors[2]
@@ -55,9 +61,9 @@ def test_the_less_noise_the_more_of_the_motion_stays(mover, positions):
 
 def test_without_any_of_the_motion_it_is_a_sample_of_the_text(mover, positions):
     """With all noise, the motion counts by x_S = sqrt(alpha_bar_S) x0 + ... alone."""
-    made = edit_by_words(mover, positions, "walks", strength=1.0, steps=30)
-    other = edit_by_words(mover, positions[::-1].copy(), "walks", strength=1.0, steps=30)
-    again = edit_by_words(mover, positions, "kicks", strength=1.0, steps=30)
+    made = edit_by_words(mover, positions, "walks", strength=1.0)
+    other = edit_by_words(mover, positions[::-1].copy(), "walks", strength=1.0)
+    again = edit_by_words(mover, positions, "kicks", strength=1.0)
     assert made.shape == (1, 64, 21, 3)
     assert apart(*(to_start(one[0]) for one in (made, other))) < 0.05
     assert apart(made, again) > 1e-4
@@ -70,14 +76,13 @@ def to_start(positions: np.ndarray) -> np.ndarray:
 def test_the_edit_begins_where_the_motion_began(mover, positions):
     turned = positions @ np.array([[0.0, 0, 1], [0, 1, 0], [-1, 0, 0]]).T + [5.0, 0.0, 2.0]
     assert apart(at_the_start_of(turned, to_start(turned)), turned) < 1e-9
-    made = edit_by_words(mover, turned, "walks", strength=0.04, steps=30)[0]
+    made = edit_by_words(mover, turned, "walks", strength=0.04)[0]
     assert np.linalg.norm(made[0, HIPS] - turned[0, HIPS]) < 0.3
 
 
 def test_a_child_does_at_its_size_what_an_adult_does(mover, positions):
     adult, child = (
-        edit_by_words(mover, size * positions, "waves", strength=0.3, steps=30)[0]
-        for size in (1.0, 0.7)
+        edit_by_words(mover, size * positions, "waves", strength=0.3)[0] for size in (1.0, 0.7)
     )
     np.testing.assert_allclose(child, 0.7 * adult, atol=1e-4)
 
@@ -86,7 +91,7 @@ def test_a_kept_part_of_the_body_stays_about_the_root_and_the_rest_changes(mover
     known = np.zeros((64, 21), bool)
     upper = [joint_index(name) for name in UPPER]
     known[:, upper] = True
-    made = edit_by_words(mover, positions, "kicks", known, strength=1.0, steps=10)[0]
+    made = edit_by_words(mover, positions, "kicks", known, strength=1.0)[0]
     # the root takes another path: all kept joints of a frame turn and move over the floor as one
     kept, wanted = (over_the_floor(x[:, upper]) for x in (made, positions))
     turn = (kept * wanted.conj()).sum(1, keepdims=True)
@@ -105,7 +110,7 @@ def over_the_floor(positions: np.ndarray) -> np.ndarray:
 def test_with_the_pelvis_the_path_stays_and_a_kept_span_is_the_motion_itself(mover, positions):
     known = np.zeros((64, 21), bool)
     known[:40] = True
-    made = edit_by_words(mover, positions, "kicks", known, steps=10, samples=2)
+    made = edit_by_words(mover, positions, "kicks", known, samples=2)
     assert np.array_equal(made[:, :40], np.stack([positions[:40]] * 2))
     assert np.abs(made[0, 50:] - made[1, 50:]).max() > 0.01
     held = columns(torch.from_numpy(known))

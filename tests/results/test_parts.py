@@ -32,7 +32,7 @@ CALLED = {  # part: where its function is, and its name
 @pytest.fixture
 def context(tmp_path, monkeypatch):
     """No network is loaded, and no picture is drawn."""
-    monkeypatch.setattr(Context, "dancer", lambda self, name: (name, "digest"))
+    monkeypatch.setattr(Context, "performer", lambda self, name: (name, "digest"))
     monkeypatch.setattr(Context, "walker", lambda self: ("walker", "digest", self.recorded))
     monkeypatch.setattr(command.dances.Stage, "dancer", lambda self, name: name)
     monkeypatch.setattr(command.persons, "person_records", lambda *given: [])

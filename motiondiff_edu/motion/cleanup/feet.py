@@ -71,7 +71,7 @@ def lock_feet(
 
 def free_legs(known: Bool[np.ndarray, "T 21"], heel: int, toe: int) -> Bool[np.ndarray, " T"]:
     """Frames in which knee, ankle and toe may be moved, since none of them is known."""
-    return ~known[:, [heel - 1, heel, toe]].any(1)
+    return ~np.any(known[:, [heel - 1, heel, toe]], axis=1)
 
 
 def slow_for(positions: Float[np.ndarray, "T 21 3"], fps: float) -> Float[np.ndarray, " T"]:

@@ -28,8 +28,8 @@ def blend_seams(
 
     Only frames without any known joint are moved.
     """
-    made, whole = np.array(positions, np.float64), known.all(1)
-    for first, last in runs(~known.any(1)).tolist():
+    made, whole = np.array(positions, np.float64), np.all(known, axis=1)
+    for first, last in runs(~np.any(known, axis=1)).tolist():
         new = made[first:last]
         if first > 1 and whole[first - 1]:
             new = continued(positions[first - 2 : first], new, fps)
