@@ -262,7 +262,7 @@ class MoFusion(nn.Module):
                 else "this network takes no music; pass music=None"
             )
         if lengths is None:
-            lengths = torch.full((1,), frames, device=self.out.weight.device)
+            lengths = torch.full((1,), frames, device=self.into.mix.weight.device)
         elif not 1 <= lengths.min() <= lengths.max() <= frames:
             raise ValueError(
                 f"lengths must be from 1 to the {frames} frames of x_s: {lengths.tolist()}"

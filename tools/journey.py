@@ -38,13 +38,14 @@ TARGET = ROOT / "docs" / "results" / "plain.json"
 COMMAND = "python -m tools.journey"
 
 # what generates, in the job of each verb
-GENERATION = {"walk": "rollout.generate", "dance": "performers.dancer.Dancer.dance_mel"}
+GENERATION = {"walk": "rollout.rollout_steps", "dance": "performers.dancer.Dancer.dance_mel"}
 
 # what the notebooks explain, and the jobs that must execute it; a name that is gone is missed, too
 TAUGHT = {
     "modiff.MoDiff.encode": ("walk", "recipe"),
     "modiff.MoDiff.decode": ("walk", "recipe"),
-    "mofusion.MoFusion.forward": ("dance", "dancer_recipe"),
+    "mofusion.MoFusion.encode": ("dance", "dancer_recipe"),
+    "mofusion.MoFusion.decode": ("dance", "dancer_recipe"),
     "rollout.rollout_steps": ("walk",),
     "ddpm.ddim_steps": ("walk", "dance"),
     "ddpm.ddim_step": ("walk", "dance"),

@@ -53,15 +53,13 @@ class Mutant:
 MUTANTS = (
     # schedules, noise, the two samplers
     Mutant("ddpm.py", "torch.cumprod(1 - beta, 0)", "1 - torch.cumsum(beta, 0)"),
-    Mutant(
-        "ddpm.py", "signal.sqrt() * x0 + noise_share.sqrt()", "signal.sqrt() * x0 + noise_share"
-    ),
-    Mutant("ddpm.py", "(1 - beta).sqrt() * x_prev", "(1 - beta) * x_prev"),
+    Mutant("ddpm.py", "* x0 + now.noise * noise", "* x0 + now.noise**2 * noise"),
+    Mutant("ddpm.py", "(1 - beta) ** 0.5 * x_prev", "(1 - beta) * x_prev"),
     Mutant("ddpm.py", "schedule.beta[1:] * left[:-1]", "schedule.beta[1:] * left[1:]"),
-    Mutant("ddpm.py", "signal_before * beta / left * x0 +", "signal_before * beta / left * x0 -"),
-    Mutant("ddpm.py", "return mean if s == 1 else mean +", "return mean +"),
-    Mutant("ddpm.py", "at(schedule.alpha, s, x_s).sqrt()\n\n", "at(schedule.alpha, s, x_s)\n\n"),
-    Mutant("ddpm.py", "1 - then - sigma**2", "1 - then"),
+    Mutant("ddpm.py", "to_x0 * x0 + to_x_s * x_s", "to_x0 * x0 - to_x_s * x_s"),
+    Mutant("ddpm.py", "if s == 1:\n        return mean", "if s == 0:\n        return mean"),
+    Mutant("ddpm.py", "* eps_hat) / now.alpha**0.5", "* eps_hat) / now.alpha"),
+    Mutant("ddpm.py", "then.noise**2 - sigma**2", "then.noise**2"),
     Mutant("ddpm.py", "zip(visited, [*visited[1:], 0]", "zip(visited, [*visited[1:], 1]"),
     Mutant("ddpm.py", "return error.square().mean()", "return error.abs().mean()"),
     # what a network predicts
@@ -122,7 +120,7 @@ MUTANTS = (
         "scale, shift = self.step(step)[:, None].chunk(2, dim=-1)",
         "shift, scale = self.step(step)[:, None].chunk(2, dim=-1)",
     ),
-    Mutant("mofusion.py", "return (out * views[0].mask)[:, :T]", "return out[:, :T]"),
+    Mutant("mofusion.py", "return (out * levels[0].mask)[:, :T]", "return out[:, :T]"),
     Mutant("mofusion.py", "torch.where(allowed, 0.0, -1e4)", "torch.where(allowed, -1e4, 0.0)"),
     Mutant("kinematic_loss.py", "max(lengths.shape[1] - 1, 1)", "lengths.shape[1]"),
     Mutant(

@@ -157,6 +157,7 @@ class Mover(Performer):
         *,
         generator: Generators | None = None,
         steps: int | None = STEPS,
+        eta: float = ETA,
         guidance: float = 1.0,
         start: Float[Tensor, "B T 22"] | None = None,
         watch: Watch = iter,
@@ -167,7 +168,7 @@ class Mover(Performer):
         """
         denoise = self.plan_denoiser(ids, frames, guidance)
         x_S = self._noise((len(ids), frames, timeline.D), generator, start)
-        made = sampled(denoise, x_S, self.schedule, steps, ETA, generator, watch)
+        made = sampled(denoise, x_S, self.schedule, steps, eta, generator, watch)
         return timeline.tidied(self.plan_scaler.inverse(made))
 
     def act(
@@ -208,14 +209,14 @@ class Mover(Performer):
         ids = self.reader.encoded([found.words] * count)
         draws, frames = generators(seed, count), round(seconds * FPS)
         whole = -(-frames // GRID) * GRID  # as in training; what is too much is cut off
-        made = self.act_ids(
-            ids,
-            whole,
-            generator=draws,
-            steps=steps,
-            guidance=guidance,
-            watch=bar("moving", (steps or self.schedule.S) + 1, progress),
-        )
+        watch = bar("moving", (steps or self.schedule.S) + 1, progress)
+        plan = None
+        if self.can_plan:
+            how = {"generator": draws, "steps": steps, "guidance": guidance, "watch": watch}
+            plan = self.plans(ids, whole, **how)
+        denoise = self.denoiser(ids, whole, guidance, plan)
+        x_S = self._noise((count, whole, D), draws, None)
+        made = self.positions_of(sampled(denoise, x_S, self.schedule, steps, ETA, draws, watch))
         source = f"{found.text:.60}"
         acts = made.double().cpu().numpy()
         clean = [clean_up(x, FPS, body=Body.of(x, bones=BONE_LENGTHS)) for x in acts]
@@ -230,27 +231,26 @@ class Mover(Performer):
         *,
         generator: Generators | None = None,
         steps: int | None = STEPS,
+        eta: float = ETA,
         guidance: float = 1.0,
         start: Float[Tensor, "B T 66"] | None = None,
         plan: Float[Tensor, "#B T 22"] | Float[np.ndarray, "#B T 22"] | None = None,
-        watch: Watch = iter,
     ) -> Float[Tensor, "B T 21 3"]:
         """Motions in metres for texts as the network takes them (`reader.encoded`), one each.
 
         `start` is the noise to begin with (default: drawn); pass the same to compare two texts.
         `plan`: the timelines of the motions; by default a network that plans makes its own.
-        `steps` as in `act`. `watch` gets each sampling loop, and shows how far it is.
+        `steps` as in `act`.
         Raises ValueError for a plan of another length or shape.
         """
         if plan is None and self.can_plan:
-            how = {"generator": generator, "steps": steps, "guidance": guidance}
-            plan = self.plans(ids, frames, watch=watch, **how)
+            how = {"generator": generator, "steps": steps, "eta": eta, "guidance": guidance}
+            plan = self.plans(ids, frames, **how)
         if plan is not None and (length := np.shape(plan)[-2]) != frames:
             raise ValueError(f"plan: it has {length} frames, and the motion {frames}")
         denoise = self.denoiser(ids, frames, guidance, plan)
         x_S = self._noise((len(ids), frames, D), generator, start)
-        x0 = sampled(denoise, x_S, self.schedule, steps, ETA, generator, watch)
-        return self.positions_of(x0)
+        return self.positions_of(sampled(denoise, x_S, self.schedule, steps, eta, generator))
 
     def _noise(
         self, shape: tuple[int, ...], generator: Generators | None, start: Tensor | None

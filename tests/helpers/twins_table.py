@@ -277,7 +277,10 @@ TWINS["06"] = {
     "bucket_loop": Twin(
         lambda distance: cross.relative_position_bucket(torch.tensor(distance)), lambda: (-46,)
     ),
-    "block_by_hand": Twin(lambda block, x, context: block(x, context=context), _small_block),
+    "block_by_hand": Twin(
+        lambda block, x, context: block(x, context=block.cross_attention.keys_and_values(context)),
+        _small_block,
+    ),
 }
 
 

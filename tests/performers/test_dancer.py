@@ -80,9 +80,9 @@ def test_a_network_with_dropout_dances_without_it_and_stays_in_training():
     one = dancer()
     x_s, s = torch.randn(2, 30, 63, generator=seeded()), torch.full((2,), 5)
     one.model.out = nn.Sequential(nn.Dropout(0.5), one.model.out).eval()
-    wanted = one.denoiser(mel(), 30, fast=False)(x_s, s)
+    wanted = one.denoiser(mel(), 30)(x_s, s)
     one.model.train()
-    torch.testing.assert_close(one.denoiser(mel(), 30, fast=False)(x_s, s), wanted)
+    torch.testing.assert_close(one.denoiser(mel(), 30)(x_s, s), wanted)
     assert one.model.training and one.model.out[0].training
 
 

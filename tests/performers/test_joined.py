@@ -22,10 +22,10 @@ from motiondiff_edu.performers.joined import (
     OFF_FLOOR,
     UNLIKE,
     Start,
-    blended,
     change_of,
     in_words,
     joined,
+    placed,
     unlike_training,
 )
 
@@ -89,7 +89,7 @@ def test_a_usual_walk_keeps_its_body_and_stands_and_nothing_is_said(walker, usua
 
 def test_what_is_given_is_marked_up_to_its_last_frame(usual):
     start = Start.of(usual, AHEAD[:5], 10)
-    whole, known, _ = blended(start, start.past[:5])
+    whole, known = placed(start, start.past[:5])
     given = (whole[:, None] == usual.positions[-1]).all((1, 2, 3)).nonzero()[0]
     assert given.tolist() == [len(whole) - 6]  # the last given frame, and then 5 new ones
     assert known[:-5].all() and not known[-5:].any()

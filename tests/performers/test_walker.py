@@ -143,10 +143,10 @@ def test_a_network_with_dropout_samples_without_it_and_stays_in_training():
     drop = walker.model.decoder[0].drop
     drop.p = 0.5
     x_s, s = torch.randn(2, T_P, 63), torch.full((2,), 3)
-    wanted = walker.denoiser(past, control, fast=False)(x_s, s)
+    wanted = walker.denoiser(past, control)(x_s, s)
     walker.model.train()
     assert not torch.allclose(walker.model(x_s, s, past, control), wanted, atol=1e-3)
-    torch.testing.assert_close(walker.denoiser(past, control, fast=False)(x_s, s), wanted)
+    torch.testing.assert_close(walker.denoiser(past, control)(x_s, s), wanted)
     assert walker.model.training and drop.training
 
 

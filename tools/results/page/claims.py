@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 from .records import cell, replaced_since, table
 
-AGREES, DIFFERS, OPEN, MISSING = "agrees", "does not agree", "undecided", "not measured"
+AGREES, DIFFERS = "agrees", "does not agree"
+OPEN, MISSING = "undecided", "not measured"
 LIMIT = re.compile(r"at (least|most) (\S+?)(?: of (\S+))?$")
 
 
@@ -51,7 +52,8 @@ class Claim:
         if of:
             least, most = (float(share) * needed[1][end] for end in ("low", "high"))
         if side == "most":
-            low, high, least, most = -high, -low, -most, -least
+            low, high = -high, -low
+            least, most = -most, -least
         return AGREES if low >= most else DIFFERS if high < least else OPEN
 
 
