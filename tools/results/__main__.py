@@ -44,6 +44,7 @@ from .recordings import windows as recorded
 from .repairs import both, dropout, mend, repair
 from .repairs.trials import names_of
 from .sweep import Sweep, Variant, run
+from .walks import departures as walker_departures
 from .walks import ladder
 from .walks.parts import FULL, LINES, QUICK, Bench, Walks, footstep_records, walker_records
 from .walks.parts import weights_digest as digest
@@ -180,6 +181,11 @@ SWEEPS = {
         weights=frozenset({SHOWN, MASKED})),
     "ladder": Trained(
         ladder.VARIANTS, lambda c, runs: ladder.sweep(c.of(ladder.FULL, ladder.QUICK), runs)),
+    "walker-departures": Trained(
+        walker_departures.VARIANTS,
+        lambda c, runs: walker_departures.sweep(
+            c.of(walker_departures.FULL, walker_departures.QUICK), runs),
+        by_name=True),
     "dance-budget": Trained(
         dance_budget.VARIANTS,
         lambda c, runs: dance_budget.sweep(c.of(dance_budget.FULL, dance_budget.QUICK), runs)),

@@ -1,0 +1,197 @@
+"""What each departure of the walker is worth at its own size, from the simplest recipe up.
+
+`base` is MoDiff at the shipped width: eps with the skip, Adam, the linear schedule, diffusion
+dropout and the plain loss. Each other variant adds what its words say to another one. A training
+has a quarter of the shipped walker's steps. Walks are sampled as `Walker.walk` does it, by DDIM in
+ten steps with held control, and measured before and after the clean-up.
+docs/results/walker-departures/plan.json has the validation loss of `base` for each rate that was
+tried, after 2,000 steps; an optimiser has the rate with the smallest one.
+Source: MoDiff III-D, IV-A, Alg. 1.  Notebook: 07
+"""
+
+import json
+from dataclasses import asdict, dataclass, replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import torch
+from jaxtyping import Float
+
+from data_synth.walking import dataset
+from motiondiff_edu.beyond.footholds import FootholdConfig
+from motiondiff_edu.diffusion_dropout import P_D
+from motiondiff_edu.metrics.adherence import adherence
+from motiondiff_edu.metrics.diversity import spread
+from motiondiff_edu.metrics.footsteps import ROBUST, footsteps, heel_speed
+from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.modiff import MODIFF_SMALL
+from motiondiff_edu.motion.cleanup import clean_up
+from motiondiff_edu.motion.root_frame import root_path, to_root_frame, to_world
+from motiondiff_edu.motion.skeleton import TOES, J
+from motiondiff_edu.performers.walker import STEPS, Walker
+from motiondiff_edu.recipes.train_walker import train, training_clips
+from motiondiff_edu.recipes.walkers import LossWeights, Recipe
+
+from ..repairs.trials import SHARE, continued
+from ..sweep import Rows, Sweep, Variant, minus
+from .parts import size_of_network
+from .scores import (
+    EDGE,
+    FPS,
+    Kind,
+    over_floor,
+    ratio,
+    ratio_of_roots,
+    root_mean,
+    shuffled_adherence,
+    squared_bone_error,
+)
+from .trials import T_H, UNSEEN, Choices, Trials, choices, rollouts_of, walker_generate
+
+PLAN = Path(__file__).parents[3] / "docs" / "results" / "walker-departures" / "plan.json"
+X0 = replace(MODIFF_SMALL, target="x0", skip=False)
+BASE = Recipe("base", MODIFF_SMALL, steps=8_000, dropout=P_D)
+
+
+def added(words: str, to: str = "base", **changes) -> Variant:
+    """A variant with further changes of the recipe, and the one that it is compared with."""
+    before = {} if to == "base" else VARIANTS[to].recipe
+    return Variant(words, before | changes, {to: to})
+
+
+VARIANTS: dict[str, Variant] = {"base": Variant("MoDiff: eps with the skip, Adam", {})}
+VARIANTS |= {
+    "leap": added("leap schedule", schedule="leap"),
+    "muon": added("Muon", optimizer="muon"),
+    "x0": added("x0 instead of eps", config=X0),
+    "v": added("v instead of eps", config=replace(X0, target="v")),
+    "metres": added("errors in metres", loss_weights=LossWeights(metres=2.0)),
+    "near": added("near frames count more", loss_weights=LossWeights(near=1.0)),
+    "bones": added("errors of bones", loss_weights=LossWeights(bones=2.0)),
+    "high-noise": added("high noise counts more", loss_weights=LossWeights(high_noise=3.0)),
+    "past-noise": added("past noise instead of dropout", past_noise=0.3, dropout=()),
+    "no-dropout": added("no diffusion dropout", dropout=()),
+    "two-noises": added("two noises for each window", noises=2),
+    "footholds": added("x0 with footholds", config=FootholdConfig(**asdict(X0))),
+}
+
+
+@dataclass(frozen=True)
+class Size:
+    """Clips to walk, pasts with `each` continuations; steps and training clips (None: all)."""
+
+    clips: int = 60
+    pasts: int = 16
+    each: int = 24
+    seconds: float = 8.0
+    steps: int | None = None
+    training: int | None = None
+
+
+FULL, QUICK = Size(), Size(clips=4, pasts=2, each=3, seconds=6.5, steps=20, training=12)
+
+
+def recipe_of(name: str, seed: int, size: Size) -> Recipe:
+    """The recipe of a variant, with the tuned rate of its optimiser.
+
+    Raises ValueError where no rate was tried for that.
+    """
+    recipe = replace(BASE, **VARIANTS[name].recipe)
+    tried = json.loads(PLAN.read_text(encoding="utf-8"))["tried"].get(recipe.optimizer)
+    if not tried:
+        raise ValueError(
+            f"{PLAN} has no rate for {recipe.optimizer}: try some, and note them there"
+        )
+    rate = float(min(tried, key=tried.get))
+    steps, clips = size.steps or recipe.steps, size.training or recipe.clips
+    name = f"walker-departures-{name}"
+    return replace(recipe, name=name, seed=seed, lr=rate, steps=steps, clips=clips)
+
+
+@cache
+def material(size: Size) -> tuple[Trials, Choices]:
+    """What all variants walk."""
+    clips = dataset(size.clips, size.seconds + T_H / FPS, seed=UNSEEN)
+    return Trials.of(clips), choices(size.pasts, size.each)
+
+
+def cleaned(made: Float[np.ndarray, "N n J 3"], trials: Trials) -> Float[np.ndarray, "N n J 3"]:
+    """Rollouts after the clean-up of `Walker.walk`, in the root frame again."""
+    found = []
+    for past, new, control in zip(trials.past, made, trials.control, strict=True):
+        rows = control[: len(past) + len(new)]
+        known = np.zeros((len(rows), J), bool)
+        known[: len(past)] = True
+        whole = clean_up(to_world(np.concatenate([past, new]), rows), FPS, known)
+        found.append(to_root_frame(whole, *root_path(rows))[0][len(past) :])
+    return np.stack(found)
+
+
+def rows_of(walker: Walker, size: Size) -> Rows:
+    """What is measured of each walk; spreads and steps are repeated to as many rows."""
+    trials, asked = material(size)
+    frames = trials.truth.shape[1]
+    whole, broken = (
+        continued(walker, trials, share, frames, steps=STEPS) for share in (0.0, SHARE)
+    )
+    clean, first, last = cleaned(whole, trials), slice(None, EDGE), slice(-EDGE, None)
+    own = spread(rollouts_of(walker_generate(walker, STEPS), asked))
+    found = {
+        "bone": squared_bone_error(whole),
+        "bone_first": squared_bone_error(whole[:, first]),
+        "bone_last": squared_bone_error(whole[:, last]),
+        "bone_broken": squared_bone_error(broken),
+        "adherence": adherence(whole, trials.asked),
+        "adherence_first": adherence(whole[:, first], trials.asked[:, first]),
+        "adherence_last": adherence(whole[:, last], trials.asked[:, last]),
+        "adherence_data": adherence(trials.truth, trials.asked),
+        "adherence_shuffled": shuffled_adherence(whole, trials.asked),
+        "skating": skating(whole, trials.asked),
+        "skating_data": skating(trials.truth, trials.asked),
+        "skating_clean": skating(clean, trials.asked),
+        "toes_moved": np.linalg.norm((clean - whole)[:, :, TOES], axis=-1).mean((1, 2)),
+    }
+    for name, poses in (("steps", whole), ("steps_data", trials.truth)):
+        each = [footsteps([one], ROBUST).count for one in heel_speed(poses, trials.asked)]
+        found[name] = np.array(each)
+    for name, one in (("spread", own), ("spread_data", spread(asked.drawn))):
+        found[name] = np.resize(one, size.clips)
+    return found
+
+
+KINDS = {
+    "bone_rmse_cm": Kind("cm", ("bone",), root_mean),
+    "broken_over_whole": Kind("ratio", ("bone_broken", "bone"), ratio_of_roots),
+    "adherence_excess_mps": Kind(
+        "m/s", ("adherence", "adherence_data"), lambda own, data: np.nanmean(own) - np.nanmean(data)
+    ),
+    "adherence_shuffled_over_own": Kind("ratio", ("adherence_shuffled", "adherence"), ratio),
+    "drift_bone_ratio": Kind("ratio", ("bone_last", "bone_first"), ratio_of_roots),
+    "drift_adherence_ratio": Kind("ratio", ("adherence_last", "adherence_first"), ratio),
+    "skating_mps": Kind("m/s", ("skating",), np.nanmean),
+    "finished_skating_over_data": Kind("ratio", ("skating_clean", "skating_data"), over_floor),
+    "cleanup_moves_toes_cm": Kind("cm", ("toes_moved",), lambda far: 100 * far.mean()),
+    "diversity_over_data": Kind("ratio", ("spread", "spread_data"), ratio),
+    "footsteps_robust_over_data": Kind("ratio", ("steps", "steps_data"), ratio),
+}
+
+
+def sweep(size: Size, runs: Path) -> Sweep:
+    """The variants, trained on one thread, whatever the machine has."""
+
+    def trained(name: str, seed: int) -> Walker:
+        torch.set_num_threads(1)
+        recipe = recipe_of(name, seed, size)
+        return train(recipe, runs / f"{name}-{seed}.safetensors", training_clips(recipe))
+
+    def about(name: str) -> dict:
+        recipe = recipe_of(name, 0, size)
+        found = {"data": UNSEEN, "clips": size.clips, "steps": recipe.steps, "rate": recipe.lr}
+        return found | {"ddim_steps": STEPS, "network": size_of_network(recipe.config)}
+
+    return Sweep(
+        "walker-departures", VARIANTS, trained,
+        lambda name, walker, seed: rows_of(walker, size),
+        KINDS, {f"{kind}_minus_{{}}": minus(how) for kind, how in KINDS.items()}, about, (0, 1, 2),
+    )  # fmt: skip
