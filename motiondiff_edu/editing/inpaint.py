@@ -4,7 +4,7 @@ A dancer samples a whole motion, and known entries are put back at each step. It
 disagree with them; then the motion jumps where they meet. So `inpaint` can be given a function that
 makes the denoiser respect them: `blend`, or `guide_and_blend`. Bones and feet are corrected by
 `editing.inbetween.clean_samples`.
-Gain: docs/RESULTS.md, *In-betweens* (`inbetween-departures.no-guidance.*`, `.no-blending.*`).
+Gain: docs/RESULTS_ALL.md (`inbetween-departures.no-guidance.*`, `.no-blending.*`).
 Source: MoFusion 4.4.  Notebook: 15
 """
 

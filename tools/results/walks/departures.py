@@ -135,7 +135,8 @@ def rows_of(walker: Walker, size: Size) -> Rows:
     whole, broken = (
         continued(walker, trials, share, frames, steps=STEPS) for share in (0.0, SHARE)
     )
-    clean, first, last = cleaned(whole, trials), slice(None, EDGE), slice(-EDGE, None)
+    first, last = slice(None, EDGE), slice(-EDGE, None)
+    clean = cleaned(whole, trials)
     own = spread(rollouts_of(walker_generate(walker, STEPS), asked))
     found = {
         "bone": squared_bone_error(whole),
