@@ -123,7 +123,8 @@ def test_what_explains_all_parts_goes_first():
 
 
 def test_an_answer_that_draws_is_refused():
-    told = refused(lambda x: np.sqrt(x) + np.random.default_rng().normal())
+    draws = np.random.default_rng(0)  # without a seed, two draws can be as good as equal
+    told = refused(lambda x: np.sqrt(x) + draws.normal())
     assert "differs from call to call" in told
 
 
