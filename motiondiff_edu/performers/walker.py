@@ -145,7 +145,7 @@ class Walker(Performer):
         Notebook: 08
         """
 
-        @torch.no_grad()
+        @torch.inference_mode()
         def sample(past: Tensor, control: Tensor, generator: Generators) -> Tensor:
             denoise = self.denoiser(past, control)
             x_S = draw(past.new_empty(len(past), self.config.T_p, self.config.D), generator)
@@ -155,4 +155,4 @@ class Walker(Performer):
                 loop = ddim_steps(denoise, x_S, self.schedule, steps, generator=generator)
             return final(loop).x_s
 
-        return sample
+        return lambda *inputs: sample(*inputs).clone()  # outside, so that it can be changed in place
