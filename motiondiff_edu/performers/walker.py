@@ -155,4 +155,5 @@ class Walker(Performer):
                 loop = ddim_steps(denoise, x_S, self.schedule, steps, generator=generator)
             return final(loop).x_s
 
-        return lambda *inputs: sample(*inputs).clone()  # outside, so that it can be changed in place
+        # a copy made outside of inference mode can be changed in place
+        return lambda *inputs: sample(*inputs).clone()
