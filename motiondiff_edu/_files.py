@@ -43,6 +43,8 @@ def check_writable(path: str | Path) -> None:
     A temporary file is made and removed; folders that are not there are made with the file itself.
     """
     path = Path(path).expanduser().absolute()
+    if os.path.isdir(path):  # a name that is too long is no folder
+        raise OSError(f"{path} is a folder; give the name of a file in it")
     there = next((folder for folder in path.parents if folder.exists()), None)
     if there is None:  # a drive of Windows that is not there
         raise OSError(f"{path}: there is no {path.anchor}; choose another place")

@@ -211,7 +211,10 @@ class Block(nn.Module):
         context: KeysValues | None = None,
         context_bias: Float[Tensor, "1 H T M"] | None = None,
     ) -> Float[Tensor, "B T W"]:
-        """`context`: what `cross_attention.keys_and_values` made of it."""
+        """`context`: what `cross_attention.keys_and_values` made of it.
+
+        Raises ValueError where a block with context gets none.
+        """
         normed = self.norm_self(x)
         x = x + self.drop(self.self_attention(normed, normed, bias))
         if self.with_context:

@@ -73,9 +73,12 @@ class Schedule:
         """
         if not isinstance(s, Tensor):
             return self._numbers[checked_step(s, self.S, first)]
-        return StepNumbers(*(at(table, s, x, first) for table in self._tables))
+        for step in _range(s, first):
+            checked_step(step, self.S, first)
+        rows = torch.stack(self._tables).to(x.device)[:, s].to(x)
+        return StepNumbers(*rows.reshape(len(rows), -1, *[1] * (x.dim() - 1)).unbind())
 
-    @property
+    @cached_property
     def _tables(self) -> tuple[Table, ...]:
         signal, noise = self.alpha_bar.sqrt(), (1 - self.alpha_bar).sqrt()
         return self.beta, self.alpha, self.alpha_bar, signal, noise, posterior_variance(self)
@@ -288,6 +291,7 @@ def p_sample(
 ) -> X:
     """x_{s-1} = p_mean + sigma_s noise; the last step, s = 1, adds none.
 
+    Raises ValueError for an unknown variance, and for a step that lacks its noise.
     Source: MoDiff eq. 11; MoFusion eq. 3.
     """
     mean = p_mean(x_s, s, eps_hat, schedule)
@@ -313,7 +317,7 @@ def sample_steps(
     """Sample from x_S back to x0, yielding S + 1 records, s = S..0; `start` is x_S, or its shape.
 
     noise[s - 1], if given, is the noise of step s; the last step, s = 1, draws none. `clip`
-    clamps x0_hat to [-clip, clip].
+    clamps x0_hat to [-clip, clip], up to rounding.
     Source: MoDiff Alg. 2. Notebook: 03.
     """
     x_s = starting_noise(start, generator)
@@ -328,7 +332,7 @@ def sample_steps(
 
 
 def clipped(x_s: X, s: int, eps_hat: X, schedule: Schedule, clip: float) -> X:
-    """The eps_hat that belongs to an x0_hat within -clip..clip."""
+    """The eps_hat that belongs to an x0_hat within -clip..clip; s is at least 1."""
     now = schedule.at(s, x_s, first=1)
     x0_hat = ((x_s - now.noise * eps_hat) / now.signal).clamp(-clip, clip)
     return (x_s - now.signal * x0_hat) / now.noise

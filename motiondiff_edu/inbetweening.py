@@ -8,7 +8,7 @@ The first frames (the paper's "seed"), keyframes or a part of the body can be gi
 At the end the given entries are restored exactly. No extra training is needed. But masking alone
 does not sample the conditional distribution (notebook 15): `resampled` goes there and back at every
 step. A trained network's guess can also disagree with the given entries: pass a denoiser that
-respects them (`beyond/guidance.py`). `editing.inbetween.inbetween` does all this in metres.
+respects them (`beyond/guidance.py`). `editing.inpaint.inpaint` does all this in metres.
 Source: MoFusion 4.4; resampling after RePaint (Lugmayr and others, 2022).  Notebook: 15
 """
 

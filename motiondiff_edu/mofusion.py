@@ -274,13 +274,20 @@ class MoFusion(nn.Module):
         if music is not None:
             for block, k in self._blocks():
                 heard |= self._hear(block, music, levels[k])
-        return Memory(levels, heard)
+        return Memory(frames, levels, heard)
 
     def decode(
         self, x_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"], memory: "Memory"
     ) -> Float[Tensor, "B T D"]:
-        """The U-Net's output for the noised motion of step s: down, the middle, and up again."""
+        """The U-Net's output for the noised motion of step s: down, the middle, and up again.
+
+        Raises ValueError for a motion of another length than the memory was made for.
+        """
         levels, T = memory.levels, x_s.shape[1]
+        if T != memory.frames:
+            raise ValueError(
+                f"this memory is for motions of {memory.frames} frames, not of {T}: encode again"
+            )
         x = F.pad(x_s, (0, 0, 0, len(levels[0].times) - T))
         step = self.step_in(step_embedding(s, 4 * self.config.widths[0]))
         h, kept = self.into(x * levels[0].mask), []
@@ -325,10 +332,12 @@ class Music:
 class Memory:
     """What the U-Net needs at every diffusion step, and what does not depend on it.
 
+    frames  of the motion
     levels  masks, times and angles; every frame, every second, every fourth ...
     heard   keys and values of the music for each layer that attends to it; {} without music
     """
 
+    frames: int
     levels: "list[Level]"
     heard: dict[nn.Module, KeysValues]
 

@@ -195,6 +195,8 @@ def test_a_place_is_tried_and_left_as_it_was(tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(OSError, match="file is a file, not a folder; choose another place"):
         check_writable(tmp_path / "file" / "walk.bvh")
+    with pytest.raises(OSError, match="is a folder; give the name of a file in it"):
+        check_writable(tmp_path)
     with pytest.raises(OSError, match="name too long.; choose another place"):
         check_writable(tmp_path / ("x" * 300 + ".bvh"))
 

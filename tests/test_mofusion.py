@@ -193,6 +193,8 @@ def test_a_song_encoded_once_is_decoded_at_every_step(change):
     memory = model.encode(heard, 37)
     for s in (torch.full((3,), 1), torch.full((3,), 30), torch.tensor([2, 9, 28])):
         torch.testing.assert_close(model.decode(x, s, memory), model(x, s, heard))
+    with pytest.raises(ValueError, match="motions of 37 frames, not of 36: encode again"):
+        model.decode(x[:, :36], torch.full((3,), 1), memory)
     other = model.encode(model.listen(*music(3, 64, seed=2)), 37)
     assert not torch.allclose(model.decode(x, s, other), model(x, s, heard), atol=1e-4)
 

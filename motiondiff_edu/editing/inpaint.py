@@ -20,7 +20,7 @@ from ..beyond.guidance import blended, guided
 from ..ddpm import Denoiser, Generators, Schedule, draw, final
 from ..inbetweening import inpaint_steps
 from ..motion.dance_frame import PATH
-from ..motion.known import given_features, with_given
+from ..motion.known import checked_given, given_features, with_given
 from ..motion.skeleton import J
 from ..performers.dancer import STEPS, Dancer
 
@@ -57,6 +57,7 @@ def inpaint(
     for music and a network without, and for shapes that do not fit.
     Source: MoFusion 4.4.  Notebook: 15
     """
+    positions, known = checked_given(positions, known)
     generator = generator or torch.Generator().manual_seed(0)
     place, features, columns = given_features(positions, known)
     given = dancer.motion_scaler.transform(features.to(dancer.device)).expand(samples, -1, -1)

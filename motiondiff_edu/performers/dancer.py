@@ -98,8 +98,8 @@ class Dancer(Performer):
 
         `guidance`: w of `beyond.classifier_free`; 1 is the conditional network. Above 1 it acts
         between the strongest and the weakest noise (GUIDED).
-        Raises ValueError for a network with music but no `mel`, or the reverse, and for guidance of
-        a network that was not made for it.
+        Raises ValueError for a network with music but no `mel`, or the reverse, for music that is
+        shorter than the motion, and for guidance of a network that was not made for it.
         """
         if (mel is None) != (self.config.C == 0):
             raise ValueError(
@@ -110,7 +110,8 @@ class Dancer(Performer):
         guidance = self._guidance(guidance)
         if mel is None:
             return self._clamped(self._to(None, frames))
-        with torch.no_grad():
+        checked_frames(mel, frames)
+        with evaluating(self.model), torch.no_grad():
             music = self.model.listen(*self.mel_input(mel, frames))
         if guidance == 1:
             return self._clamped(self._to(music, frames))
@@ -264,12 +265,7 @@ class Dancer(Performer):
         watch   gets the sampling loop, and shows how far it is
         Raises ValueError for more frames than the music has, and as `denoiser`.  Notebook: 12
         """
-        longest = int((mel.shape[1] - 1) / FRAMES_PER_SECOND * FPS) + 1
-        frames = longest if frames is None else frames
-        if not 1 <= frames <= longest:
-            raise ValueError(
-                f"the music lasts {longest} frames of motion ({longest / FPS:.1f} s), not {frames}"
-            )
+        frames = checked_frames(mel, frames)
         guidance = self._guidance(guidance)
         if getattr(self.config, "deterministic", False):
             return self._regress(mel, frames)
@@ -281,9 +277,22 @@ class Dancer(Performer):
 
     def _regress(self, mel: Float[Tensor, "B M C"], frames: int) -> Float[Tensor, "B T 21 3"]:
         """The single dance that a regression gives for each song."""
-        music = self.model.listen(*self.mel_input(mel, frames))
         nothing = torch.zeros(len(mel), frames, self.config.D, device=self.device)
         s = torch.zeros(len(mel), dtype=torch.long, device=self.device)
         with evaluating(self.model):
-            out = self.model(nothing, s, music)
+            out = self.model(nothing, s, self.model.listen(*self.mel_input(mel, frames)))
         return to_positions(self.motion_scaler.inverse(out))
+
+
+def checked_frames(mel: Float[Tensor, "B M C"], frames: int | None) -> int:
+    """The frames of a motion to this music, by default as many as it lasts.
+
+    Raises ValueError for more than that, and for fewer than one.
+    """
+    longest = int((mel.shape[1] - 1) / FRAMES_PER_SECOND * FPS) + 1
+    frames = longest if frames is None else frames
+    if not 1 <= frames <= longest:
+        raise ValueError(
+            f"the music lasts {longest} frames of motion ({longest / FPS:.1f} s), not {frames}"
+        )
+    return frames

@@ -25,7 +25,7 @@ from ..beyond.turning_frame import TurningFrame
 from ..ddpm import Denoiser, Generators, Schedule, draw, final
 from ..inbetweening import inpaint_steps
 from ..mofusion import MoFusion, MoFusionConfig
-from ..motion.known import given_features, with_given
+from ..motion.known import checked_given, given_features, with_given
 from ..motion.scaler import Scaler
 from .networks import register
 from .performer import Performer, Watch
@@ -142,6 +142,7 @@ class Inbetweener(Performer):
         infinite, and for shapes that do not fit.
         Source: MoFusion 4.4.  Notebook: 15
         """
+        positions, known = checked_given(positions, known)
         generator = generator or torch.Generator().manual_seed(0)
         place, features, columns = given_features(positions, known)
         device = self.motion_scaler.mean.device

@@ -110,15 +110,16 @@ class Mover(Performer):
         if (plan is None) == self.can_plan:
             what = "needs one: see `plans`" if plan is None else "takes none"
             raise ValueError(f"plan: this mover {what}")
-        given = () if plan is None else (self.plan_scaler.transform(self._plan(plan, len(ids))),)
-        plans = (one.expand(len(ids), -1, -1) for one in given)
-        return self._guided(self.model, ids, frames, guidance, *plans)
+        if plan is None:
+            return self._guided(self.model, ids, frames, guidance)
+        given = self.plan_scaler.transform(self._plan(plan, len(ids), frames))
+        return self._guided(self.model, ids, frames, guidance, given.expand(len(ids), -1, -1))
 
     def plan_denoiser(self, ids: Texts, frames: int, guidance: float = 1.0) -> Denoiser:
         """The same for timelines in the network's units, of a network that plans."""
         return self._guided(self.model.planner, ids, frames, guidance)
 
-    def _plan(self, plan: Tensor | np.ndarray, texts: int) -> Float[Tensor, "#B T 22"]:
+    def _plan(self, plan: Tensor | np.ndarray, texts: int, frames: int) -> Float[Tensor, "#B T 22"]:
         """A plan as the network takes it.  Raises ValueError for one of another shape."""
         made = torch.as_tensor(plan, dtype=torch.float32, device=self.device)
         if made.ndim != 3 or made.shape[0] not in (1, texts) or made.shape[2] != timeline.D:
@@ -126,6 +127,8 @@ class Mover(Performer):
                 f"plan: its shape must be (1 or {texts}, frames, {timeline.D}), not "
                 f"{tuple(made.shape)}"
             )
+        if made.shape[1] != frames:
+            raise ValueError(f"plan: it has {made.shape[1]} frames, and the motion {frames}")
         return made
 
     def _guided(
@@ -246,8 +249,6 @@ class Mover(Performer):
         if plan is None and self.can_plan:
             how = {"generator": generator, "steps": steps, "eta": eta, "guidance": guidance}
             plan = self.plans(ids, frames, **how)
-        if plan is not None and (length := np.shape(plan)[-2]) != frames:
-            raise ValueError(f"plan: it has {length} frames, and the motion {frames}")
         denoise = self.denoiser(ids, frames, guidance, plan)
         x_S = self._noise((len(ids), frames, D), generator, start)
         return self.positions_of(sampled(denoise, x_S, self.schedule, steps, eta, generator))

@@ -10,7 +10,6 @@ from pathlib import Path
 import torch
 
 from ..conditions import clip as clips
-from ..motion.motion import MotionError
 from ..pretrained.by_name import load
 from ..pretrained.checkpoints import AnyPerformer, save
 from ..pretrained.judges import save_judge
@@ -77,7 +76,8 @@ def main() -> None:
         "--data",
         type=Path,
         metavar="FOLDER",
-        help="train a walker on the motions in this folder (BVH, npz, ...), not on synthetic ones",
+        help="train a walker on the motions in this folder (BVH, npz, ...), not on synthetic ones; "
+        "its run and its weights are named NAME-own",
     )
     parser.add_argument(
         "--device", help="cpu or cuda (default: a GPU, if there is one that torch can use)"
@@ -108,10 +108,10 @@ def main() -> None:
             parser.exit(1, f"--ear {arguments.ear}: {error}\n")
     arguments.runs.mkdir(parents=True, exist_ok=True)
     for name in arguments.names or buildable(EVERY):
-        file = f"{name}.safetensors"
+        file = f"{name}-own.safetensors" if arguments.data else f"{name}.safetensors"
         try:
             made = build(name, arguments.runs / file, arguments.out / file, ear=ear, **given)
-        except (clips.ClipError, clips.NoTransformers, MotionError, RecordingsError) as error:
+        except (clips.NoTransformers, ValueError) as error:  # of files, recordings, runs, CLIPs
             parser.exit(1, f"{name}: {error}\n")
         print("wrote", made)
 

@@ -4,6 +4,7 @@ A killed run continues where it was saved last.
 """
 
 import hashlib
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,6 +26,7 @@ from ..modiff import training_loss
 from ..motion.augment import mirror, reverse_time
 from ..motion.clip import Clip
 from ..motion.files import read_motions
+from ..motion.motion import MotionError, MotionWarning
 from ..motion.root_frame import FPS
 from ..performers.networks import network
 from ..performers.walker import Walker
@@ -50,9 +52,16 @@ def training_clips(recipe: Recipe) -> list[Clip]:
 def clips_of(folder: Path) -> list[Clip]:
     """One's own motions for a walker: the files of a folder, at 20 frames/s, and mirrored.
 
-    Raises MotionError if none can be read.
+    A MotionWarning names each file that is left out. Raises MotionError if none can be used.
     """
-    clips = [motion.resampled(FPS).rooted().to_clip() for motion in read_motions(folder)]
+    clips = []
+    for motion in read_motions(folder):
+        try:
+            clips.append(motion.resampled(FPS).rooted().to_clip())
+        except MotionError as error:
+            warnings.warn(f"left out: {error}", MotionWarning, stacklevel=2)
+    if not clips:
+        raise MotionError(f"no motion in {folder} can be used: each lacks joints")
     return [version for clip in clips for version in (clip, mirror(clip))]
 
 

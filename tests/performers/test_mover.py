@@ -137,7 +137,7 @@ def test_a_plan_of_ones_own_is_an_array_of_the_right_shape(planning):
         planning.act_ids(ids, 44, steps=2, plan=own)
     for wrong in (own[0], own[..., :5], np.repeat(own, 3, 0)):
         with pytest.raises(ValueError, match=r"its shape must be \(1 or 2, frames, 22\)"):
-            planning._plan(wrong, len(ids))  # the tests' check of shapes comes first otherwise
+            planning._plan(wrong, len(ids), 40)  # the tests' check of shapes comes first otherwise
 
 
 def test_plans_are_guided_too(planning):

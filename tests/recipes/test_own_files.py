@@ -27,7 +27,7 @@ TINY = replace(
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """Two motions in formats of their own, one of them deeper; a file that is damaged; another."""
+    """Two motions, one of them deeper; one with a hole; a file that is damaged; another."""
     place = tmp_path / "mine"
     (place / "deeper").mkdir(parents=True)
     control = np.tile([1.2, 0.0, 0.1], (60, 1))
@@ -35,12 +35,17 @@ def folder(tmp_path: Path) -> Path:
         Motion.of_clip(walk(control, seed=seed)).save(place / name)
     (place / "broken.bvh").write_text("HIERARCHY\nROOT Hips\n{")
     (place / "notes.txt").write_text("nothing to read here")
+    torn = Motion.of_clip(walk(control, seed=2))
+    torn.positions[7, 3] = np.nan
+    torn.save(place / "torn.npz")
     return place
 
 
 def test_every_file_that_can_be_read_is_trained_on_and_mirrored(folder):
-    with pytest.warns(MotionWarning, match="left out: .*broken.bvh"):
+    with pytest.warns(MotionWarning) as told:
         clips = clips_of(folder)
+    left_out = [str(one.message) for one in told if "left out" in str(one.message)]
+    assert len(left_out) == 2 and "broken.bvh" in left_out[0] and "no position" in left_out[1]
     assert len(clips) == 4 and all(len(clip) == 60 and clip.fps == 20 for clip in clips)
     first, mirrored = clips[:2]
     np.testing.assert_allclose(mirrored.control, first.control * [1, -1, -1], atol=1e-9)
