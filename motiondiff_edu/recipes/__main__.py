@@ -111,7 +111,7 @@ def main() -> None:
         file = f"{name}-own.safetensors" if arguments.data else f"{name}.safetensors"
         try:
             made = build(name, arguments.runs / file, arguments.out / file, ear=ear, **given)
-        except (clips.NoTransformers, ValueError) as error:  # of files, recordings, runs, CLIPs
+        except (clips.ClipError, clips.NoTransformers, ValueError) as error:
             parser.exit(1, f"{name}: {error}\n")
         print("wrote", made)
 
