@@ -2,28 +2,17 @@
 
 import numpy as np
 import pytest
-import torch
 from small_dancers import small_inbetweener
+from walked_clips import clip, seeded
 
 from data_synth.walking import random_control, walk
 from motiondiff_edu.editing.inbetween import clean_samples, inbetween
 from motiondiff_edu.editing.masks import body_part, gap, keyframes, seed
 from motiondiff_edu.metrics.bone_lengths import bone_lengths
 from motiondiff_edu.metrics.skating import skating
-from motiondiff_edu.motion.root_frame import to_world
 from motiondiff_edu.motion.skeleton import HEELS, TOES
 
 VISITED = [30, 20, 30, 20, 10, 20, 10]  # three steps, each made twice
-
-
-def seeded(seed: int = 0) -> torch.Generator:
-    return torch.Generator().manual_seed(seed)
-
-
-def clip(T: int = 40) -> np.ndarray:
-    """A real enough motion that starts somewhere, facing somewhere."""
-    walked = walk(random_control(T / 20 + 1, np.random.default_rng(0), "turn"), 0)
-    return to_world(walked.poses, walked.control, (3.0, -2.0, 0.7))[:T]
 
 
 @pytest.mark.parametrize(

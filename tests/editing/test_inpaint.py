@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 import torch
 from small_dancers import dancer_of_bands as dancer
+from walked_clips import clip, seeded
 
-from data_synth.walking import random_control, walk
+from data_synth.walking import walk
 from motiondiff_edu.ddpm import ddim_steps, final, timesteps
 from motiondiff_edu.editing import inpaint as module
 from motiondiff_edu.editing.inpaint import blend, fading, guide_and_blend, inpaint
@@ -17,20 +18,9 @@ from motiondiff_edu.inbetweening import resampled
 from motiondiff_edu.metrics.keyframes import seam_jump
 from motiondiff_edu.mofusion import MoFusion
 from motiondiff_edu.motion.dance_frame import Place, to_features, to_positions
-from motiondiff_edu.motion.root_frame import to_world
 from motiondiff_edu.performers.dancer import FARTHEST
 from motiondiff_edu.prediction import x0_from_eps
 from motiondiff_edu.pretrained import checkpoints
-
-
-def seeded(seed: int = 0) -> torch.Generator:
-    return torch.Generator().manual_seed(seed)
-
-
-def clip(T: int = 40) -> np.ndarray:
-    """A real enough motion that starts somewhere, facing somewhere."""
-    walked = walk(random_control(T / 20 + 1, np.random.default_rng(0), "turn"), 0)
-    return to_world(walked.poses, walked.control, (3.0, -2.0, 0.7))[:T]
 
 
 @pytest.mark.parametrize(
