@@ -18,7 +18,7 @@ from data_synth.walking import walk
 from data_synth.walking.write import main as write_walks
 from motiondiff_edu import bound, ddpm, exact, prediction
 from motiondiff_edu.conditions.control import joystick
-from motiondiff_edu.metrics.adherence import adherence
+from motiondiff_edu.metrics.walks import adherence
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.motion.bvh.write import write_bvh
 from motiondiff_edu.motion.clip import slice_clips, split_by_source

@@ -20,7 +20,7 @@ from data_synth.music.song import SAMPLE_RATE
 from data_synth.music.varied import varied_song
 from motiondiff_edu.conditions.audio_files import read_audio
 from motiondiff_edu.conditions.music import beats_of, log_mel
-from motiondiff_edu.metrics.beats import f_measure
+from motiondiff_edu.metrics.dances import f_measure
 
 SECONDS = 10
 SHORTEST = 20  # seconds of a recording: shorter ones are single sounds

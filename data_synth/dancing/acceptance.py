@@ -11,7 +11,7 @@ import argparse
 
 import numpy as np
 
-from motiondiff_edu.metrics.beats import beat_alignment
+from motiondiff_edu.metrics.dances import beat_alignment
 
 from ..music.score import beat_song
 from ..music.song import GENRES, Song

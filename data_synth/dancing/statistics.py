@@ -13,8 +13,13 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
 from scipy.signal import argrelmin, welch
 
-from motiondiff_edu.metrics.dance_floor import TURN_SECONDS, standing_feet, travel, turning
-from motiondiff_edu.metrics.repetition import autocorrelation
+from motiondiff_edu.metrics.bodies import (
+    TURN_SECONDS,
+    autocorrelation,
+    standing_feet,
+    travel,
+    turning,
+)
 from motiondiff_edu.motion.skeleton import HEELS, joint_index
 
 SMOOTHING = 0.083  # seconds, of the mean joint speed before its minima are taken
@@ -26,7 +31,7 @@ def joint_speed(world: Float[np.ndarray, "T 21 3"], fps: float) -> Float[np.ndar
 
     It is the mean over joints of |p(t + 1) - p(t - 1)| fps / 2, for frames with two neighbours.
 
-    `metrics.beats.mean_speed` uses a single step: quick movements count more there.
+    `metrics.dances.mean_speed` uses a single step: quick movements count more there.
     """
     return np.linalg.norm(world[2:] - world[:-2], axis=-1).mean(-1) * fps / 2
 
@@ -38,7 +43,7 @@ def kinematic_beats(
 
     The speed is smoothed by a Gaussian of SMOOTHING; the times come from a cubic spline.
 
-    `metrics.beats.kinematic_beats` first resamples the motion itself to 60 frames/s, and so finds
+    `metrics.dances.kinematic_beats` first resamples the motion itself to 60 frames/s, and so finds
     stops that the two-frame speed misses: 2 % more on our dances.
     """
     speed = gaussian_filter1d(joint_speed(world, fps), SMOOTHING * fps)
@@ -67,7 +72,7 @@ def _across(world: Float[np.ndarray, "T 21 3"], fps: float) -> Float[np.ndarray,
 def root_frame(world: Float[np.ndarray, "T 21 3"], fps: float) -> Float[np.ndarray, "T 63"]:
     """Joints minus hips, turned so that hips and shoulders face z (smoothed by 0.1 s).
 
-    `metrics.repetition.pose_changes` keeps the height of the hips, and does not smooth.
+    `metrics.bodies.pose_changes` keeps the height of the hips, and does not smooth.
     """
     left = _across(world, fps)
     p = world - world[:, :1]

@@ -9,10 +9,9 @@ import time
 import numpy as np
 from jaxtyping import Bool, Float
 
-from motiondiff_edu.metrics.adherence import adherence
-from motiondiff_edu.metrics.bone_lengths import bone_lengths
-from motiondiff_edu.metrics.diversity import spread
-from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.metrics.bodies import bone_lengths
+from motiondiff_edu.metrics.distributions import spread
+from motiondiff_edu.metrics.walks import adherence, skating
 from motiondiff_edu.motion.clip import Clip
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, TOES
 

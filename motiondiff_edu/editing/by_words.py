@@ -4,7 +4,7 @@
 The more noise, the more the text decides; the less, the more of the motion stays. A part of the
 body or a span of time can be kept besides, by masks as in in-betweening.
 A mover that plans makes a timeline of the new sentence first. What legs or arms do where they are
-kept is read off the motion (`metrics.actions`), and the rest of the timeline is generated to it.
+kept is read off the motion (`metrics.texts`), and the rest of the timeline is generated to it.
 MoFusion says that its motions can be edited by text, but not how; this way is ours.
 Source: SDEdit (Meng and others, 2022); the masks of MoFusion 4.4.
 Notebook: 17
@@ -19,7 +19,7 @@ from ..beyond import timeline
 from ..beyond.guidance import blended
 from ..ddpm import Generators, draw, final, q_sample, timesteps
 from ..inbetweening import inpaint_steps
-from ..metrics.actions import HANDS, actions
+from ..metrics.texts import HANDS, actions
 from ..motion.checks import checked_strength
 from ..motion.dance_frame import Place
 from ..motion.known import checked_given

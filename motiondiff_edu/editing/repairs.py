@@ -13,8 +13,8 @@ import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
-from ..metrics import reconstruction as measures
-from ..metrics.bone_lengths import bone_rmse
+from ..metrics import keyframes as measures
+from ..metrics.bodies import bone_rmse
 from ..motion.cleanup import Body, clean_bones
 from ..reconstruction import Rollout, Stop, reconstruct_steps
 from ..rollout import AnyWalker

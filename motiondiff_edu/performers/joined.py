@@ -13,7 +13,7 @@ from jaxtyping import Bool, Float
 from torch import Tensor
 
 from ..conditions.control import splice
-from ..metrics.seams import AROUND, seam_step
+from ..metrics.keyframes import AROUND, seam_step
 from ..motion.cleanup import clean_up
 from ..motion.motion import Motion, MotionError
 from ..motion.root_frame import FPS, root_path, to_world

@@ -1,6 +1,6 @@
 """Judges of words: a space of texts and motions with its units, shipped for R-Precision and FID.
 
-Source: `metrics/retrieval.py`, which has the network and the measures.
+Source: `metrics/distributions.py`, which has the network and the measures.
 Notebook: 17
 """
 
@@ -17,7 +17,7 @@ from torch import Tensor
 
 from ..conditions.text import read
 from ..conditions.word_encoder import FIRST, ids_of
-from ..metrics.retrieval import Space
+from ..metrics.distributions import Space
 from ..motion.moving_frame import D, to_features
 from ..motion.scaler import Scaler
 from .checkpoints import (

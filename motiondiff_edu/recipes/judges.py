@@ -11,7 +11,7 @@ from jaxtyping import Float
 from torch import Tensor, nn
 
 from ..conditions.word_encoder import FIRST
-from ..metrics.retrieval import Space, contrast
+from ..metrics.distributions import Space, contrast
 from ..motion.moving_frame import D
 from ..performers.described_windows import Chosen
 from ..pretrained.judges import Judge

@@ -16,7 +16,7 @@ from ..beyond.classifier_free import without
 from ..beyond.gain_noise import gain_noise
 from ..beyond.schedules import shifted
 from ..ddpm import Schedule, cosine_schedule
-from ..metrics.bone_lengths import bone_lengths
+from ..metrics.bodies import bone_lengths
 from ..motion import dance_frame
 from ..performers.dance_windows import DanceWindows, toes_moved
 from ..performers.dancer import Dancer

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator
 
-from ..metrics.beats import kinematic_beats, smooth_speed
+from ..metrics.dances import kinematic_beats, smooth_speed
 from ..motion.resample import DANCE_FPS, resample
 from .body import GREY, INK
 from .style import DASHES, MARKERS, OKABE_ITO, SMALL, figure, legend

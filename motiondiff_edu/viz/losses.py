@@ -14,7 +14,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from ..metrics.bone_lengths import bone_lengths
+from ..metrics.bodies import bone_lengths
 from ..motion.skeleton import BONE_LENGTHS, BONES, HIPS
 from .body import INK
 from .style import DASHES, MEDIUM, OKABE_ITO, SMALL, figure, legend, table

@@ -10,8 +10,7 @@ from jaxtyping import Bool, Float
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..metrics.footsteps import runs
-from ..metrics.skating import PLANTED_BELOW
+from ..metrics.walks import PLANTED_BELOW, runs
 from .body import INK, LEFT_COLOUR, RIGHT_COLOUR
 from .style import DASHES, MARKERS, figure, legend, table
 

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Polygon
 
-from ..metrics.footsteps import runs
+from ..metrics.walks import runs
 from ..motion.skeleton import HEELS, HIPS, TOES
 from . import body
 from .style import LARGE, MEDIUM, OKABE_ITO, SMALL, figure, legend

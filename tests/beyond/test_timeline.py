@@ -23,7 +23,7 @@ from motiondiff_edu.beyond.timeline import (
     tidied,
     timeline,
 )
-from motiondiff_edu.metrics import sentences
+from motiondiff_edu.metrics import texts
 from motiondiff_edu.motion.root_frame import FPS
 from motiondiff_edu.recipes.train_mover import timeline_of
 
@@ -32,7 +32,7 @@ def test_its_verbs_are_those_of_the_sentences():
     assert set(VERBS) == set(ACTS) and len(VERBS) == len(set(VERBS))
     assert {verb for verb in ACTS if ACTS[verb].kind == "arms"} == set(ARMS)
     assert {verb for verb in ACTS if ACTS[verb].kind == "way"} == set(LEGS) - set(WITH_TIMES)
-    assert sentences.COUNTED <= set(WITH_TIMES)
+    assert texts.COUNTED <= set(WITH_TIMES)
 
 
 def test_two_acts_of_the_legs_and_one_of_the_arms_by_hand():

@@ -19,7 +19,7 @@ from motiondiff_edu.conditions.music import (
     frame_times,
     log_mel,
 )
-from motiondiff_edu.metrics.beats import f_measure
+from motiondiff_edu.metrics.dances import f_measure
 
 FRAMING = {"sr": SAMPLE_RATE, "n_fft": music.N_FFT, "hop_length": 512}
 

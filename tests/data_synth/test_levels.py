@@ -5,7 +5,7 @@ import pytest
 
 from data_synth.levels import LOWEST, at_levels, leaning, wave
 from data_synth.mixed import motions
-from motiondiff_edu.metrics.bone_lengths import bone_lengths
+from motiondiff_edu.metrics.bodies import bone_lengths
 from motiondiff_edu.motion.skeleton import HEELS, HIPS, TOES, joint_index
 
 FEET = [*HEELS, *TOES]

@@ -10,7 +10,7 @@ import pytest
 import torch
 
 from data_synth.mixed import motions
-from motiondiff_edu.metrics.bone_lengths import bone_rmse
+from motiondiff_edu.metrics.bodies import bone_rmse
 from motiondiff_edu.pretrained.checkpoints import load_dancer, save
 from motiondiff_edu.recipes.dancers import UNCONDITIONAL
 from motiondiff_edu.recipes.train_dancer import train_dancer, training_windows

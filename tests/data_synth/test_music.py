@@ -25,7 +25,7 @@ from data_synth.music.song import (
 )
 from data_synth.music.voices import VOICES, note
 from data_synth.music.write import main
-from motiondiff_edu.metrics.beats import f_measure
+from motiondiff_edu.metrics.dances import f_measure
 
 
 @pytest.fixture(scope="module")

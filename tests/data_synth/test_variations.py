@@ -14,7 +14,7 @@ from data_synth.variations import (
     pelvis_moved,
     with_upper_body_of,
 )
-from motiondiff_edu.metrics.bone_lengths import bone_lengths
+from motiondiff_edu.metrics.bodies import bone_lengths
 from motiondiff_edu.motion.dance_frame import facing
 from motiondiff_edu.motion.inverse_kinematics import descendants
 from motiondiff_edu.motion.skeleton import HEELS, HIPS, JOINTS, TOES, J, joint_index

@@ -12,7 +12,7 @@ from data_synth.walking.footsteps import TOE_AHEAD
 from data_synth.walking.gait_cycles import analyse
 from data_synth.walking.styles import STYLES, draw_style, person
 from data_synth.walking.write import main
-from motiondiff_edu.metrics.diversity import spread
+from motiondiff_edu.metrics.distributions import spread
 from motiondiff_edu.motion.augment import mirror
 from motiondiff_edu.motion.bvh import read_bvh
 from motiondiff_edu.motion.root_frame import root_path, to_root_frame

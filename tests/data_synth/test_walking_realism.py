@@ -22,8 +22,7 @@ from data_synth.walking.acceptance import (
 from data_synth.walking.gait_cycles import GRID, analyse, cycles
 from data_synth.walking.gait_statistics import mean_curves, statistics, turning_lean
 from data_synth.walking.own_measures import limits, own_measures
-from motiondiff_edu.metrics.adherence import adherence
-from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.metrics.walks import adherence, skating
 from motiondiff_edu.motion.retarget import load_clip
 
 CARD = (Path(__file__).parents[2] / "data_synth" / "README.md").read_text(encoding="utf-8")

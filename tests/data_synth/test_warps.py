@@ -5,7 +5,7 @@ import pytest
 
 from data_synth.mixed import motions
 from data_synth.warps import FASTEST, PAUSE, PAUSES, SLOWEST, drawn, drawn_pace, times_of, warped
-from motiondiff_edu.metrics.bone_lengths import bone_lengths
+from motiondiff_edu.metrics.bodies import bone_lengths
 
 FPS = 20.0
 

@@ -8,8 +8,8 @@ from walked_clips import clip, seeded
 from data_synth.walking import random_control, walk
 from motiondiff_edu.editing.inbetween import clean_samples, inbetween
 from motiondiff_edu.editing.masks import body_part, gap, keyframes, seed
-from motiondiff_edu.metrics.bone_lengths import bone_lengths
-from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.metrics.bodies import bone_lengths
+from motiondiff_edu.metrics.walks import skating
 from motiondiff_edu.motion.skeleton import HEELS, TOES
 
 VISITED = [30, 20, 30, 20, 10, 20, 10]  # three steps, each made twice

@@ -11,7 +11,7 @@ from data_synth.imperfect import ARM
 from data_synth.walking import walk
 from motiondiff_edu.editing import reconstruct as module
 from motiondiff_edu.editing.reconstruct import _once, _windows, path_of, reconstruct
-from motiondiff_edu.metrics.bone_lengths import bone_lengths
+from motiondiff_edu.metrics.bodies import bone_lengths
 from motiondiff_edu.motion.directions import ARMS, UPLEGS
 from motiondiff_edu.motion.motion import Motion, MotionError, MotionWarning
 from motiondiff_edu.motion.root_frame import estimate_root

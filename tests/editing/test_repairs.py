@@ -12,8 +12,8 @@ import torch
 from data_synth.imperfect import ARM, dead_joints
 from data_synth.walking import walk
 from motiondiff_edu.editing.repairs import Reconstructions, sample_reconstructions, with_bones
-from motiondiff_edu.metrics import reconstruction as measures
-from motiondiff_edu.metrics.bone_lengths import bone_rmse
+from motiondiff_edu.metrics import keyframes as measures
+from motiondiff_edu.metrics.bodies import bone_rmse
 from motiondiff_edu.motion.scaler import Scaler
 
 T_H = 10

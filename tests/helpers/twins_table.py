@@ -38,12 +38,10 @@ from motiondiff_edu import cross_modal_attention as cross
 from motiondiff_edu.baselines import linear_dropout, ridge, text
 from motiondiff_edu.conditions import music
 from motiondiff_edu.metrics import (
-    adherence,
-    beats,
-    bone_lengths,
-    footsteps,
-    kinetic_features,
-    retrieval,
+    bodies,
+    dances,
+    distributions,
+    walks,
 )
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.mofusion import ResBlock
@@ -212,9 +210,9 @@ def _planted_walk() -> tuple:
 
 TWINS["08"] = {
     "roll": Twin(_rolled, _two_walkers),
-    "bone_rmse_loop": Twin(bone_lengths.bone_rmse, lambda: _planted_walk()[:1]),
-    "residual_loop": Twin(adherence.residual_velocity, _planted_walk),
-    "runs_loop": Twin(footsteps.runs, lambda: (np.array([1, 0, 0, 1, 1, 1, 0, 1], dtype=bool),)),
+    "bone_rmse_loop": Twin(bodies.bone_rmse, lambda: _planted_walk()[:1]),
+    "residual_loop": Twin(walks.residual_velocity, _planted_walk),
+    "runs_loop": Twin(walks.runs, lambda: (np.array([1, 0, 0, 1, 1, 1, 0, 1], dtype=bool),)),
 }
 
 
@@ -502,11 +500,13 @@ def _stops_and_beats() -> tuple:
 
 
 TWINS["14"] = {
-    "speed_loop": Twin(beats.mean_speed, lambda: (_short_dance(), 25)),
-    "alignment_loop": Twin(beats.beat_alignment, lambda: (*_stops_and_beats(), 0.2)),
-    "chance_by_sum": Twin(beats.chance_level, lambda: (_stops_and_beats()[1], 9.0, 0.1), atol=1e-4),
+    "speed_loop": Twin(dances.mean_speed, lambda: (_short_dance(), 25)),
+    "alignment_loop": Twin(dances.beat_alignment, lambda: (*_stops_and_beats(), 0.2)),
+    "chance_by_sum": Twin(
+        dances.chance_level, lambda: (_stops_and_beats()[1], 9.0, 0.1), atol=1e-4
+    ),
     "published_loop": Twin(
-        lambda p: kinetic_features.published_kinetic_features(p, 60), lambda: (_short_dance(),)
+        lambda p: distributions.published_kinetic_features(p, 60), lambda: (_short_dance(),)
     ),
 }
 
@@ -599,7 +599,7 @@ def _texts_and_motions() -> tuple:
 
 
 def _of_one_pool(texts, motions, k) -> float:
-    return retrieval.r_precision(texts, motions, range(32), np.random.default_rng(0))[k - 1]
+    return distributions.r_precision(texts, motions, range(32), np.random.default_rng(0))[k - 1]
 
 
 TWINS["17"] = {"r_precision_loop": Twin(_of_one_pool, _texts_and_motions)}

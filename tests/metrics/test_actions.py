@@ -7,7 +7,7 @@ import pytest
 from gaits import rest_pose
 
 from data_synth.actions import Act, Phrase, act_out, clips, mirror
-from motiondiff_edu.metrics.actions import Recognised, actions, has_a_body
+from motiondiff_edu.metrics.texts import Recognised, actions, has_a_body
 
 LIKE = ("verb", "side", "count", "direction")
 

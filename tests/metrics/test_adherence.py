@@ -1,4 +1,4 @@
-"""metrics.adherence, on walks that keep the control and walks that do not.
+"""metrics.walks, on walks that keep the control and walks that do not.
 
 Nought when the feet go where the control says, else the difference in velocity.
 """
@@ -7,8 +7,12 @@ import numpy as np
 import pytest
 from gaits import FPS, control_of, gait, rest_pose
 
-from motiondiff_edu.metrics.adherence import adherence, implied_root_velocity, residual_velocity
-from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.metrics.walks import (
+    adherence,
+    implied_root_velocity,
+    residual_velocity,
+    skating,
+)
 from motiondiff_edu.motion.root_frame import to_world
 from motiondiff_edu.motion.skeleton import MIRROR, TOES
 

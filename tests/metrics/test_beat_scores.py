@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from moves import stopping_at, sway
 
-from motiondiff_edu.metrics.beat_scores import BeatScores, beat_scores
-from motiondiff_edu.metrics.beats import NoBeatsWarning, chance_level
+from motiondiff_edu.metrics.dances import BeatScores, NoBeatsWarning, beat_scores, chance_level
 
 TEMPI = (88, 103, 119, 131)
 SONGS = [

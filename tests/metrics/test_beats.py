@@ -10,7 +10,7 @@ import pytest
 from moves import shake, stopping_at, sway
 from scipy.special import erf
 
-from motiondiff_edu.metrics.beats import (
+from motiondiff_edu.metrics.dances import (
     NoBeatsWarning,
     beat_alignment,
     chance_level,

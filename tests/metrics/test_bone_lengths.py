@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from gaits import control_of, gait, rest_pose
 
-from motiondiff_edu.metrics.bone_lengths import bone_lengths, bone_rmse, bone_rmse_within_clip
+from motiondiff_edu.metrics.bodies import bone_lengths, bone_rmse, bone_rmse_within_clip
 from motiondiff_edu.motion.root_frame import to_world
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, MIRROR
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from gaits import rest_pose
 
-from motiondiff_edu.metrics.dance_floor import standing_feet, travel, turning
+from motiondiff_edu.metrics.bodies import standing_feet, travel, turning
 from motiondiff_edu.motion.skeleton import HEELS, TOES
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from gaits import rest_pose
 
-from motiondiff_edu.metrics.diversity import spread
+from motiondiff_edu.metrics.distributions import spread
 
 
 def test_equal_rollouts_have_no_spread():

@@ -1,4 +1,4 @@
-"""metrics.footsteps, on a gait whose steps are known.
+"""metrics.walks, on a gait whose steps are known.
 
 The true count, and what noise and sliding do to the paper's count.
 """
@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from gaits import FPS, STANCE, control_of, gait, rest_pose
 
-from motiondiff_edu.metrics.footsteps import (
+from motiondiff_edu.metrics.walks import (
     PAPER,
     ROBUST,
     StepRule,

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from scipy.linalg import sqrtm
 
-from motiondiff_edu.metrics.diversity import diversity, multimodality
-from motiondiff_edu.metrics.frechet import (
+from motiondiff_edu.metrics.distributions import (
     FewSamplesWarning,
+    diversity,
     fid,
     fid_floor,
     frechet_distance,
+    multimodality,
     normalise,
     shrunk_covariance,
     shrunk_fid,

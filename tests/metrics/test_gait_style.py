@@ -6,7 +6,7 @@ import pytest
 from data_synth.variations import limbs_turned
 from data_synth.walking import walk
 from motiondiff_edu.conditions.control import constant_control
-from motiondiff_edu.metrics.gait_style import HANDS, HEELS, NAMES, NECK, gait_style, style_kept
+from motiondiff_edu.metrics.walks import HANDS, HEELS, NAMES, NECK, gait_style, style_kept
 from motiondiff_edu.motion.kinematics import rot_y
 from motiondiff_edu.motion.skeleton import OFFSETS, PARENTS
 

@@ -9,7 +9,7 @@ import pytest
 from data_synth.walking import random_control, walk
 from motiondiff_edu.baselines.interpolation import linear, spherical
 from motiondiff_edu.editing.masks import gap, keyframes
-from motiondiff_edu.metrics.bone_lengths import bone_rmse
+from motiondiff_edu.metrics.bodies import bone_rmse
 from motiondiff_edu.metrics.keyframes import (
     energy_score,
     keyframe_error,

@@ -6,7 +6,7 @@ Values of the public code, movements whose energy is known, and the fault in pla
 import numpy as np
 import pytest
 
-from motiondiff_edu.metrics.kinetic_features import (
+from motiondiff_edu.metrics.distributions import (
     from_the_origin,
     kinetic_features,
     published_kinetic_features,

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from moves import shake, stopping_at
 
-from motiondiff_edu.metrics.beats import kinematic_beats
-from motiondiff_edu.metrics.published_beats import (
+from motiondiff_edu.metrics.dances import (
     aist_beats,
     aist_score,
     bailando_beats,
     bailando_score,
+    kinematic_beats,
 )
 from motiondiff_edu.motion.aist import read_keypoints
 

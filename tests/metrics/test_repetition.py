@@ -5,7 +5,7 @@ import pytest
 from gaits import rest_pose
 from scipy.ndimage import gaussian_filter1d
 
-from motiondiff_edu.metrics.repetition import (
+from motiondiff_edu.metrics.bodies import (
     lag_similarity,
     pose_changes,
     repeat_score,

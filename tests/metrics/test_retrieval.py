@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch
 
-from motiondiff_edu.metrics.retrieval import Space, contrast, mm_dist, pools, r_precision
+from motiondiff_edu.metrics.distributions import Space, contrast, mm_dist, pools, r_precision
 
 RNG = np.random.default_rng(0)
 

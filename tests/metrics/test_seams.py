@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from motiondiff_edu.metrics.seams import seam_over_motion, seam_over_past, seam_step
+from motiondiff_edu.metrics.keyframes import seam_over_motion, seam_over_past, seam_step
 
 
 def moving(steps) -> np.ndarray:

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from data_synth.actions import clips
-from motiondiff_edu.metrics.actions import Recognised, actions
-from motiondiff_edu.metrics.sentences import Asked, agreement, confusion, rows_of
+from motiondiff_edu.metrics.texts import Asked, Recognised, actions, agreement, confusion, rows_of
 
 
 def seen(verb: str, side: str = "", count: int = 1, at: float = 1.0) -> Recognised:

@@ -1,4 +1,4 @@
-"""metrics.skating, on feet that stand, slide and fly.
+"""metrics.walks, on feet that stand, slide and fly.
 
 Nought for feet that stand, the slide itself for feet that slide, nothing for feet in the air.
 """
@@ -7,8 +7,13 @@ import numpy as np
 import pytest
 from gaits import FPS, control_of, gait, rest_pose
 
-from motiondiff_edu.metrics.adherence import adherence
-from motiondiff_edu.metrics.skating import ground_velocity, planted_share, planted_toe, skating
+from motiondiff_edu.metrics.walks import (
+    adherence,
+    ground_velocity,
+    planted_share,
+    planted_toe,
+    skating,
+)
 from motiondiff_edu.motion.root_frame import forward_left, root_path, to_root_frame, to_world
 from motiondiff_edu.motion.skeleton import MIRROR, TOES, joint_index
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from synthetic_walk import walk
 
-from motiondiff_edu.metrics.bone_lengths import bone_lengths
+from motiondiff_edu.metrics.bodies import bone_lengths
 from motiondiff_edu.metrics.keyframes import seam_jump
 from motiondiff_edu.motion.cleanup.seam import (
     LONGEST,

@@ -7,9 +7,9 @@ from data_synth.dancing.performance import dance
 from data_synth.music import GENRES, compose
 from data_synth.walking import walk
 from motiondiff_edu.conditions.control import constant_control
-from motiondiff_edu.metrics.bone_lengths import bone_lengths
-from motiondiff_edu.metrics.seams import seam_step
-from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.metrics.bodies import bone_lengths
+from motiondiff_edu.metrics.keyframes import seam_step
+from motiondiff_edu.metrics.walks import skating
 from motiondiff_edu.motion.cleanup import Body, clean_up, floor_under
 from motiondiff_edu.motion.cleanup.feet import FARTHEST
 from motiondiff_edu.motion.motion import Motion

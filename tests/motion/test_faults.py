@@ -8,7 +8,7 @@ import torch
 
 from motiondiff_edu.editing.inbetween import clean_samples
 from motiondiff_edu.editing.inpaint import guide_and_blend, inpaint
-from motiondiff_edu.metrics.bone_lengths import bone_lengths
+from motiondiff_edu.metrics.bodies import bone_lengths
 from motiondiff_edu.motion.faults import wild_joints
 from motiondiff_edu.motion.retarget import load_clip
 from motiondiff_edu.motion.skeleton import HIPS, JOINTS

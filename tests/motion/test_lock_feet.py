@@ -5,8 +5,8 @@ import pytest
 
 from data_synth.walking import walk
 from motiondiff_edu.editing.masks import body_part, gap, keyframes
-from motiondiff_edu.metrics.bone_lengths import bone_lengths
-from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.metrics.bodies import bone_lengths
+from motiondiff_edu.metrics.walks import skating
 from motiondiff_edu.motion.cleanup.feet import (
     CLEARANCE,
     FARTHEST,

@@ -8,8 +8,8 @@ import pytest
 import torch
 
 from motiondiff_edu.conditions.control import joystick, splice
-from motiondiff_edu.metrics.adherence import adherence
-from motiondiff_edu.metrics.bone_lengths import bone_rmse
+from motiondiff_edu.metrics.bodies import bone_rmse
+from motiondiff_edu.metrics.walks import adherence
 from motiondiff_edu.motion.bvh import read_bvh
 from motiondiff_edu.motion.bvh.write import write_bvh
 from motiondiff_edu.motion.retarget import load_clip

@@ -9,9 +9,9 @@ import torch
 import motiondiff_edu as md
 from data_synth.walking import drawn_walk, walk
 from motiondiff_edu.conditions.control import constant_control
-from motiondiff_edu.metrics.bone_lengths import bone_lengths
-from motiondiff_edu.metrics.seams import seam_over_motion, seam_step
-from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.metrics.bodies import bone_lengths
+from motiondiff_edu.metrics.keyframes import seam_over_motion, seam_step
+from motiondiff_edu.metrics.walks import skating
 from motiondiff_edu.motion.cleanup.seam import LONGEST
 from motiondiff_edu.motion.inverse_kinematics import drag
 from motiondiff_edu.motion.motion import Motion, MotionWarning

@@ -15,7 +15,7 @@ from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.conditions.word_encoder import NOTHING, PADDING, WordEncoder, ids_of, present
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.kinematic_loss import training_loss
-from motiondiff_edu.metrics.bone_lengths import bone_lengths
+from motiondiff_edu.metrics.bodies import bone_lengths
 from motiondiff_edu.motion.moving_frame import D, to_features, to_positions
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS

@@ -6,8 +6,7 @@ A recorded song is danced to, and the dance neither freezes nor flies apart.
 import numpy as np
 import pytest
 
-from motiondiff_edu.metrics.bone_lengths import bone_rmse
-from motiondiff_edu.metrics.repetition import repeat_score
+from motiondiff_edu.metrics.bodies import bone_rmse, repeat_score
 from motiondiff_edu.motion.bvh import read_bvh
 from motiondiff_edu.motion.bvh.write import write_bvh
 from motiondiff_edu.pretrained.checkpoints import available, pretrained

@@ -9,7 +9,7 @@ from data_synth.actions import captions, clips
 from data_synth.actions.neighbours import neighbour
 from motiondiff_edu.conditions.text import TextError, base_vocabulary
 from motiondiff_edu.conditions.word_encoder import FIRST
-from motiondiff_edu.metrics.retrieval import Space, r_precision
+from motiondiff_edu.metrics.distributions import Space, r_precision
 from motiondiff_edu.motion.moving_frame import D
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.pretrained.checkpoints import available

@@ -8,7 +8,7 @@ import pytest
 import torch
 
 from motiondiff_edu.conditions.word_encoder import FIRST
-from motiondiff_edu.metrics.retrieval import Space, contrast
+from motiondiff_edu.metrics.distributions import Space, contrast
 from motiondiff_edu.motion.moving_frame import D
 from motiondiff_edu.performers.described_windows import Chosen
 from motiondiff_edu.pretrained.judges import judges

@@ -11,7 +11,7 @@ import pytest
 import torch
 from small_dancers import dancer_of_bands, small_inbetweener
 
-from motiondiff_edu.metrics.bone_lengths import bone_lengths
+from motiondiff_edu.metrics.bodies import bone_lengths
 from motiondiff_edu.metrics.keyframes import npss
 from tools.results.inbetweens import departures, inbetween
 from tools.results.inbetweens.inbetween import (

@@ -12,7 +12,7 @@ import torch
 from data_synth.imperfect import ARM, dead_joints, dropped_frames
 from motiondiff_edu.beyond.back_with_known import masked_way_back
 from motiondiff_edu.ddpm import cosine_schedule
-from motiondiff_edu.metrics.bone_lengths import bone_rmse
+from motiondiff_edu.metrics.bodies import bone_rmse
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import JOINTS
 from motiondiff_edu.reconstruction import plain_way_back

@@ -12,7 +12,7 @@ sys.path.insert(
     0, str(Path(__file__).parents[2])
 )  # tools and benchmarks are of the checkout, not of the package
 
-from motiondiff_edu.metrics.footsteps import footsteps, heel_speed  # noqa: E402
+from motiondiff_edu.metrics.walks import footsteps, heel_speed  # noqa: E402
 from tools.results.__main__ import weights_of  # noqa: E402
 from tools.results.page import cards
 from tools.results.walks import steps_table  # noqa: E402

@@ -7,7 +7,7 @@ from jupyter_page import ASK, lab, run_all  # noqa: F401
 
 CELL = """import sys; sys.path.insert(0, {tests!r})
 import motiondiff_edu as md
-from motiondiff_edu.metrics.actions import actions
+from motiondiff_edu.metrics.texts import actions
 from motiondiff_edu.widgets.prompt import Prompt
 box = Prompt(md.load("mover"), "walks forward", seconds=3.0)
 box"""

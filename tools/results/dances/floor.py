@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float
 
-from motiondiff_edu.metrics.dance_floor import standing_feet, travel, turning
+from motiondiff_edu.metrics.bodies import standing_feet, travel, turning
 
 from ..walks.scores import Measure, measure_of, ratio
 

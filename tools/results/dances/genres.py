@@ -15,7 +15,7 @@ from jaxtyping import Float
 from sklearn.discriminant_analysis import LinearDiscriminantAnalysis
 
 from data_synth.music.song import Song
-from motiondiff_edu.metrics.dance_floor import standing_feet, travel
+from motiondiff_edu.metrics.bodies import standing_feet, travel
 from motiondiff_edu.motion.root_frame import body_heading, to_root_frame
 from motiondiff_edu.motion.skeleton import HIPS
 

@@ -18,7 +18,7 @@ from jaxtyping import Float
 
 from motiondiff_edu.conditions.audio_files import read_audio
 from motiondiff_edu.conditions.music import SAMPLE_RATE, beats_of, log_mel
-from motiondiff_edu.metrics.beats import (
+from motiondiff_edu.metrics.dances import (
     NoBeatsWarning,
     beat_alignment,
     kinematic_beats,

@@ -9,13 +9,22 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float
 
-from motiondiff_edu.metrics.beat_scores import BeatScores, beat_scores
-from motiondiff_edu.metrics.beats import NoBeatsWarning, kinematic_beats, music_alignment
-from motiondiff_edu.metrics.diversity import diversity
-from motiondiff_edu.metrics.frechet import FewSamplesWarning, fid, normalise
-from motiondiff_edu.metrics.kinetic_features import kinetic_features
-from motiondiff_edu.metrics.repetition import repeat_score
-from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.metrics.bodies import repeat_score
+from motiondiff_edu.metrics.dances import (
+    BeatScores,
+    NoBeatsWarning,
+    beat_scores,
+    kinematic_beats,
+    music_alignment,
+)
+from motiondiff_edu.metrics.distributions import (
+    FewSamplesWarning,
+    diversity,
+    fid,
+    kinetic_features,
+    normalise,
+)
+from motiondiff_edu.metrics.walks import skating
 
 from ..walks.scores import FPS, Kind, Measure, measure_of, ratio, root_mean, squared_bone_error
 

@@ -15,9 +15,9 @@ from jaxtyping import Bool, Float
 from motiondiff_edu.beyond.guidance import guided
 from motiondiff_edu.editing.inbetween import clean_samples, inbetween
 from motiondiff_edu.editing.inpaint import WEIGHT, Steer, blend, guide_and_blend, inpaint
-from motiondiff_edu.metrics.bone_lengths import bone_lengths
+from motiondiff_edu.metrics.bodies import bone_lengths
 from motiondiff_edu.metrics.keyframes import seam_jump, unknown_error
-from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.metrics.walks import skating
 from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.performers.inbetweener import Inbetweener
 

@@ -20,7 +20,7 @@ from motiondiff_edu.editing.inbetween import inbetween
 from motiondiff_edu.editing.inpaint import inpaint
 from motiondiff_edu.editing.masks import gap
 from motiondiff_edu.metrics.keyframes import keyframe_error, npss_parts, seam_jump, unknown_error
-from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.metrics.walks import skating
 from motiondiff_edu.motion.dance_frame import at_origin
 from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.performers.inbetweener import Inbetweener

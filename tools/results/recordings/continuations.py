@@ -14,9 +14,8 @@ import numpy as np
 from jaxtyping import Float
 
 from motiondiff_edu import rollout
-from motiondiff_edu.metrics.adherence import adherence
-from motiondiff_edu.metrics.seams import seam_over_motion, seam_over_past, seam_step
-from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.metrics.keyframes import seam_over_motion, seam_over_past, seam_step
+from motiondiff_edu.metrics.walks import adherence, skating
 from motiondiff_edu.motion.cleanup import clean_up
 from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.motion.root_frame import FPS, control_from_path, to_root_frame

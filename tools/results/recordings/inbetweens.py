@@ -20,7 +20,7 @@ from motiondiff_edu.editing.inbetween import clean_samples
 from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.editing.plausible import each_until_plausible
 from motiondiff_edu.metrics.keyframes import energy_score, unknown_error
-from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.metrics.walks import skating
 from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.motion.root_frame import FPS
 from motiondiff_edu.performers.inbetweener import STEPS, Inbetweener

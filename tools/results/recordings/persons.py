@@ -15,8 +15,8 @@ from jaxtyping import Float
 from data_synth.walking import drawn_walk
 from motiondiff_edu import rollout
 from motiondiff_edu.conditions.control import constant_control
-from motiondiff_edu.metrics.diversity import spread
-from motiondiff_edu.metrics.gait_style import gait_style, style_kept
+from motiondiff_edu.metrics.distributions import spread
+from motiondiff_edu.metrics.walks import gait_style, style_kept
 from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.motion.root_frame import FPS
 from motiondiff_edu.motion.skeleton import J

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from motiondiff_edu.metrics.adherence import adherence
+from motiondiff_edu.metrics.walks import adherence
 from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.recipes.train_walker import train, training_clips

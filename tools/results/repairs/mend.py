@@ -3,7 +3,7 @@
 It measures diffusion dropout, repairs beside methods without a walker, and MoDiff's Table II.
 """
 
-from motiondiff_edu.metrics.footsteps import PAPER, ROBUST
+from motiondiff_edu.metrics.walks import PAPER, ROBUST
 from motiondiff_edu.pretrained import checkpoints
 
 from ..walks.parts import Bench, weights_digest

@@ -21,10 +21,8 @@ from jaxtyping import Float
 from data_synth.walking import dataset
 from motiondiff_edu.beyond.footholds import FootholdConfig
 from motiondiff_edu.diffusion_dropout import P_D
-from motiondiff_edu.metrics.adherence import adherence
-from motiondiff_edu.metrics.diversity import spread
-from motiondiff_edu.metrics.footsteps import ROBUST, footsteps, heel_speed
-from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.metrics.distributions import spread
+from motiondiff_edu.metrics.walks import ROBUST, adherence, footsteps, heel_speed, skating
 from motiondiff_edu.modiff import MODIFF_SMALL
 from motiondiff_edu.motion.cleanup import clean_up
 from motiondiff_edu.motion.root_frame import root_path, to_root_frame, to_world

@@ -20,8 +20,7 @@ import torch
 from data_synth.walking import dataset
 from motiondiff_edu.beyond.footholds import FootholdConfig
 from motiondiff_edu.diffusion_dropout import P_D
-from motiondiff_edu.metrics.adherence import adherence
-from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.metrics.walks import adherence, skating
 from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.recipes.train_walker import train, training_clips
 from motiondiff_edu.recipes.walkers import MEND_CONFIG, OURS, LossWeights, Recipe

@@ -13,7 +13,7 @@ import numpy as np
 from safetensors import safe_open
 
 from motiondiff_edu._files import replacing
-from motiondiff_edu.metrics.footsteps import PAPER, ROBUST
+from motiondiff_edu.metrics.walks import PAPER, ROBUST
 from motiondiff_edu.modiff import MoDiffConfig
 from motiondiff_edu.pretrained import checkpoints
 

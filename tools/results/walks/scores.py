@@ -11,10 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from motiondiff_edu.metrics.adherence import adherence
-from motiondiff_edu.metrics.bone_lengths import bone_lengths
-from motiondiff_edu.metrics.diversity import spread
-from motiondiff_edu.metrics.skating import planted_share, skating
+from motiondiff_edu.metrics.bodies import bone_lengths
+from motiondiff_edu.metrics.distributions import spread
+from motiondiff_edu.metrics.walks import adherence, planted_share, skating
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS
 
 from ..intervals import interval, interval_over_seeds

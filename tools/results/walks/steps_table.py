@@ -9,7 +9,7 @@ squares of their durations) at every tolerance; these tables can be added.
 import numpy as np
 from jaxtyping import Float
 
-from motiondiff_edu.metrics.footsteps import PAPER, TOLERANCES, StepRule, heel_speed, step_durations
+from motiondiff_edu.metrics.walks import PAPER, TOLERANCES, StepRule, heel_speed, step_durations
 
 from .scores import Measure, measure_of
 
@@ -31,7 +31,7 @@ def curve(table: Float[np.ndarray, "N V 3"]) -> Float[np.ndarray, "V"]:
 def row(table: Float[np.ndarray, "N V 3"]) -> tuple[float, float, float, float]:
     """f_est, v95, mean and std of the durations at v95.
 
-    The same as `metrics.footsteps.footsteps` on these clips.
+    The same as `metrics.walks.footsteps` on these clips.
     """
     count, total, squares = table.sum(0).T
     at = int(np.argmax(count >= 0.95 * count.max()))

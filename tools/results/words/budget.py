@@ -17,9 +17,9 @@ import numpy as np
 
 from data_synth.actions.neighbours import KINDS as PAIRS
 from motiondiff_edu.baselines.text import BagConfig, RegressionConfig
-from motiondiff_edu.metrics import sentences
-from motiondiff_edu.metrics.actions import actions
-from motiondiff_edu.metrics.sentences import KINDS as RECOGNISED
+from motiondiff_edu.metrics import texts
+from motiondiff_edu.metrics.texts import KINDS as RECOGNISED
+from motiondiff_edu.metrics.texts import actions
 from motiondiff_edu.motion import moving_frame
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.pretrained.judges import judges
@@ -100,7 +100,7 @@ KINDS |= {name: Kind(unit, (name,), np.mean) for name, unit in RETRIEVED.items()
 def rows_of(panel: Panel, made: list[Positions]) -> dict[str, np.ndarray]:
     """The rows of KINDS of one training: a number for each trial, or one for all of them."""
     points = panel.row(made)
-    rows = dict(sentences.rows_of(panel.trials.phrases, [actions(x) for x in made]))
+    rows = dict(texts.rows_of(panel.trials.phrases, [actions(x) for x in made]))
     for kind, (right, there) in by_trial(panel, nearer(panel, points)).items():
         rows |= {f"right{kind}": right, f"pairs{kind}": there}
     rows["bones"] = np.array([squared_bone_error(x[None])[0] for x in made])

@@ -15,7 +15,7 @@ from data_synth.actions.acts import VERBS
 from data_synth.actions.sentences import ARMS, in_training
 from motiondiff_edu.editing.by_words import STRENGTH, edit_by_words
 from motiondiff_edu.editing.masks import body_part
-from motiondiff_edu.metrics.actions import actions
+from motiondiff_edu.metrics.texts import actions
 from motiondiff_edu.performers.described_windows import GRID
 from motiondiff_edu.performers.mover import Mover
 

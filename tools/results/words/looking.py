@@ -5,7 +5,7 @@ their captions. Whoever looks at each sheet writes what is performed, in order, 
 `looked_at.json`: {"clips": {"17": [["walk", "", 1], ["raise", "left", 2]], ...}}, with the weights
 that were looked at, and by whom; "again" has some of the clips, looked at by somebody else.
 `looked_at_measures` compares. Sides and counts are as in
-`metrics.actions`: what is not counted has the count 1, and a side is "left", "right", "both" or "".
+`metrics.texts`: what is not counted has the count 1, and a side is "left", "right", "both" or "".
 Source: Cohen's kappa (1960), by scikit-learn
 """
 
@@ -23,8 +23,7 @@ from sklearn.metrics import cohen_kappa_score
 
 from motiondiff_edu._files import replacing
 from motiondiff_edu.beyond import timeline
-from motiondiff_edu.metrics.actions import UPLEGS, Recognised, actions
-from motiondiff_edu.metrics.sentences import COUNTED
+from motiondiff_edu.metrics.texts import COUNTED, UPLEGS, Recognised, actions
 from motiondiff_edu.motion.dance_frame import heading
 from motiondiff_edu.motion.root_frame import FPS
 from motiondiff_edu.motion.skeleton import HIPS

@@ -9,12 +9,11 @@ import numpy as np
 from jaxtyping import Float
 
 from data_synth.actions.neighbours import KINDS
-from motiondiff_edu.metrics import diversity, frechet
-from motiondiff_edu.metrics.actions import SIDES, actions
-from motiondiff_edu.metrics.beats import mean_speed
-from motiondiff_edu.metrics.retrieval import TOP, mm_dist, r_precision
-from motiondiff_edu.metrics.sentences import confusion, rows_of
-from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.metrics import distributions
+from motiondiff_edu.metrics.dances import mean_speed
+from motiondiff_edu.metrics.distributions import TOP, mm_dist, r_precision
+from motiondiff_edu.metrics.texts import SIDES, actions, confusion, rows_of
+from motiondiff_edu.metrics.walks import skating
 from motiondiff_edu.pretrained.judges import Judge
 
 from ..walks.scores import Measure, measure_of, over_floor, ratio, root_mean, squared_bone_error
@@ -107,8 +106,8 @@ def retrieved(panel: Panel, row: Sequence[Points]) -> list[Measure]:
                 found[f"{top}_over_real"].append(own[k] / real[k])
         found["mm_dist"].append(mm_dist(mine.texts, mine.motions))
         found["mm_dist_over_real"].append(found["mm_dist"][-1] / mm_dist(data.texts, data.motions))
-        found["fid"].append(frechet.fid(mine.motions, data.motions))
-        found["diversity"].append(diversity.diversity(mine.motions))
+        found["fid"].append(distributions.fid(mine.motions, data.motions))
+        found["diversity"].append(distributions.diversity(mine.motions))
     return [spread(name, values, RETRIEVED[name]) for name, values in found.items()]
 
 
@@ -134,7 +133,7 @@ def multimodality(
     both = []
     for every in (made, data):
         points = [np.stack([judge.of_motions(one) for one in every], 1) for judge in judges]
-        both.append(np.mean([diversity.diversity(one) for one in points], axis=0))
+        both.append(np.mean([distributions.diversity(one) for one in points], axis=0))
     own, real = both
     return [
         measure_of("multimodality", "distance", np.mean, own),

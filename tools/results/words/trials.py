@@ -13,7 +13,7 @@ from jaxtyping import Float
 from data_synth.actions import Sentence, act_out, caption, clips
 from data_synth.actions.dataset import worded
 from data_synth.actions.neighbours import KINDS, changed
-from motiondiff_edu.metrics.sentences import Asked, Phrases
+from motiondiff_edu.metrics.texts import Asked, Phrases
 from motiondiff_edu.motion.root_frame import FPS
 from motiondiff_edu.performers.described_windows import GRID
 
@@ -43,7 +43,7 @@ class Trials:
 
     @property
     def phrases(self) -> list[Phrases]:
-        """The sentences as `metrics.sentences` takes them; standing is not asked for."""
+        """The sentences as `metrics.texts` takes them; standing is not asked for."""
         return [asked(sentence) for sentence in self.sentences]
 
     def chosen(self, which: Sequence[int]) -> "Trials":
