@@ -153,7 +153,7 @@ def test_names_of_every_folder_are_compared():
     assert {
         "ddpm.q_sample",
         "metrics.dances.music_alignment",
-        "viz.metrics.footstep_curves",
+        "viz.walks.footstep_curves",
     } < names
     assert {name.split(".")[0] for name in names} > {"beyond", "performers", "motion", "course"}
 

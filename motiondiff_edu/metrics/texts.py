@@ -340,7 +340,6 @@ def waves(s: Signals, k: int, free: Bool[np.ndarray, "T"]) -> list[Recognised]:
     return found
 
 
-# ---- sentences -----------------------------------------------------------------------------------
 COUNTED = frozenset(("squat", "jump", "kick", "bow", "raise", "punch", "clap"))
 DIRECTED = frozenset(("turn", "jump", "point"))  # around, forward, to the side, or none
 
@@ -382,10 +381,7 @@ KINDS = tuple(one.name for one in fields(Agreement))
 
 
 def agreement(phrases: Phrases, found: Sequence[Recognised]) -> Agreement:
-    """Compare a sentence with what was recognised. Each act is matched with one recognised action.
-
-    Among recognised actions with the verb, that with the same side and count is taken first.
-    """
+    """Match each act of a sentence with one recognised action; the same side and count go first."""
     matched, _ = _matched(phrases, found)
     most = max(sum(len(phrase) for phrase in phrases), len(found))
     middles = [(k, (one.first + one.last) / 2) for k, _, one in matched]
@@ -438,8 +434,7 @@ def confusion(
 ) -> dict[tuple[str, str], int]:
     """How often an asked side was recognised as which, of acts with one side, by (asked, found).
 
-    "both": the act is shown on the asked side and on the other one, which nobody asked for.
-    "none": the act is not shown.
+    "both": it is shown on the asked side and on the other one, too. "none": it is not shown.
     """
     table: Counter[tuple[str, str]] = Counter()
     for phrases, recognised in zip(sentences, found, strict=True):

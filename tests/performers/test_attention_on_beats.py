@@ -185,7 +185,7 @@ def test_notebook_12_dances_to_an_upload_and_says_what_is_wrong_with_it(monkeypa
 
 def test_figures_say_what_they_show():
     pytest.importorskip("matplotlib")
-    from motiondiff_edu.viz import listening as viz
+    from motiondiff_edu.viz import sound as viz
     from motiondiff_edu.viz.style import caption
 
     found, times = maps(T=30)

@@ -21,7 +21,7 @@ from motiondiff_edu.performers.loss_by_step import (
     noisy_predictor,
     predictor_of,
 )
-from motiondiff_edu.viz import losses as viz
+from motiondiff_edu.viz import training as viz
 from motiondiff_edu.viz.style import caption
 
 SCHEDULE, STEPS = cosine_schedule(50), (1, 17, 30, 44)

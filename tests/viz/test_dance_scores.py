@@ -4,7 +4,7 @@ import numpy as np
 from moves import stopping_at, sway
 
 from motiondiff_edu.motion.resample import DANCE_FPS
-from motiondiff_edu.viz import dance_scores as viz
+from motiondiff_edu.viz import dances as viz
 from motiondiff_edu.viz.style import caption
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from motiondiff_edu.viz import dropout as viz
+from motiondiff_edu.viz import walks as viz
 from motiondiff_edu.viz.style import caption
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from motiondiff_edu.viz import inbetween as viz
-from motiondiff_edu.viz.gaps_and_faults import by_fault, over_gaps
+from motiondiff_edu.viz import repairs as viz
+from motiondiff_edu.viz.repairs import by_fault, over_gaps
 from motiondiff_edu.viz.style import caption
 
 RNG = np.random.default_rng(0)

@@ -1,6 +1,6 @@
 """The picture of the ladder: a row per recipe, a dot per training, one scale for each measure."""
 
-from motiondiff_edu.viz.ladder import Rung, ladder
+from motiondiff_edu.viz.walks import Rung, ladder
 
 NAN = float("nan")
 RUNGS = [

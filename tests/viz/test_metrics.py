@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from motiondiff_edu.viz import metrics as viz
+from motiondiff_edu.viz import walks as viz
 from motiondiff_edu.viz.style import caption
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from motiondiff_edu.motion.skeleton import JOINTS, OFFSETS, PARENTS, J
-from motiondiff_edu.viz import motion, reading
+from motiondiff_edu.viz import attention, motion
 from motiondiff_edu.viz.style import caption
 
 
@@ -57,7 +57,7 @@ def test_windows_are_as_long_as_they_say():
 
 def test_buckets_and_sharpness_are_what_was_given():
     distance = np.arange(-4, 5)
-    figure = reading.bucket_map(distance, np.abs(distance), 2, "buckets")
+    figure = attention.bucket_map(distance, np.abs(distance), 2, "buckets")
     past, future = figure.axes[0].lines
     assert list(past.get_xdata()) == [-4, -3, -2, -1, 0] and list(future.get_ydata()) == [
         1,
@@ -65,7 +65,7 @@ def test_buckets_and_sharpness_are_what_was_given():
         3,
         4,
     ]
-    figure = reading.sharpness(
+    figure = attention.sharpness(
         np.array([4, 8, 16]), {"a": np.array([0.1, 0.2, 0.3])}, 0.05, "sharp"
     )
     np.testing.assert_allclose(figure.axes[0].lines[0].get_ydata(), [0.1, 0.2, 0.3])
@@ -74,7 +74,9 @@ def test_buckets_and_sharpness_are_what_was_given():
 def test_weight_against_effect_has_a_panel_for_each_group():
     rng = np.random.default_rng(1)
     weight, effect = rng.random((4, 7)), rng.random((4, 7))
-    figure = reading.weight_against_effect(weight, effect, [("past", 2), ("control", 5)], "against")
+    figure = attention.weight_against_effect(
+        weight, effect, [("past", 2), ("control", 5)], "against"
+    )
     assert [axes.get_title() for axes in figure.axes] == ["past", "control"]
     dots = [axes.lines[1].get_xydata() for axes in figure.axes]
     assert [len(d) for d in dots] == [8, 20]

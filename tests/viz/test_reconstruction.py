@@ -4,8 +4,8 @@ import numpy as np
 
 from data_synth.walking import walk
 from motiondiff_edu.motion.skeleton import BONES, J
-from motiondiff_edu.viz import metrics
-from motiondiff_edu.viz import reconstruction as viz
+from motiondiff_edu.viz import repairs as viz
+from motiondiff_edu.viz import walks
 
 POSES = walk(np.tile([1.2, 0.0, 0.0], (7, 1)), seed=1).poses
 
@@ -44,7 +44,7 @@ def test_the_repairs_have_a_row_of_their_own():
 def test_a_table_has_as_many_digits_as_it_takes_to_tell_two_figures_apart():
     rows = {"a": {"cm": 14.17}, "b": {"cm": 13.79}}
     shown = [
-        [text.get_text() for text in metrics.score_table(rows, "words", **options).axes[0].texts]
+        [text.get_text() for text in walks.score_table(rows, "words", **options).axes[0].texts]
         for options in ({}, {"digits": 3})
     ]
     assert shown == [["14", "14"], ["14.2", "13.8"]]

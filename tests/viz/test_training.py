@@ -3,8 +3,8 @@
 import numpy as np
 
 from motiondiff_edu.viz import training as viz
-from motiondiff_edu.viz.losses import loss_table
 from motiondiff_edu.viz.style import caption
+from motiondiff_edu.viz.training import loss_table
 
 
 def test_a_bar_is_the_floor_and_what_lies_above_it():

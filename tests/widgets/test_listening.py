@@ -9,8 +9,8 @@ from browser import open_page, player_page, until
 from click_track import RATE, clicks, jumping
 from synthetic_walk import walk
 
-from motiondiff_edu.viz.listening import levels_over_sound
 from motiondiff_edu.viz.over_time import edges_of
+from motiondiff_edu.viz.sound import levels_over_sound
 from motiondiff_edu.viz.style import caption
 from motiondiff_edu.widgets import strips
 from motiondiff_edu.widgets.listening import Listening

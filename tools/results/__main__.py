@@ -25,7 +25,7 @@ from motiondiff_edu._files import replacing
 from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.performers.inbetweener import Inbetweener
 from motiondiff_edu.pretrained import checkpoints
-from motiondiff_edu.viz.metrics import footstep_curves
+from motiondiff_edu.viz.walks import footstep_curves
 
 from .course.exercises import course_records
 from .course.shown import shown_records

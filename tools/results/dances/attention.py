@@ -21,7 +21,7 @@ from motiondiff_edu.performers.attention_on_beats import (
     seconds_read,
 )
 from motiondiff_edu.performers.dancer import STEPS, Dancer
-from motiondiff_edu.viz.listening import levels_over_sound
+from motiondiff_edu.viz.sound import levels_over_sound
 
 from ..walks.parts import weights_digest
 from ..walks.scores import Measure, measure_of, ratio

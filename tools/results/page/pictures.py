@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 
 from motiondiff_edu._files import replacing
-from motiondiff_edu.viz.gaps_and_faults import by_fault, over_gaps, rate_map
-from motiondiff_edu.viz.ladder import Rung, ladder
+from motiondiff_edu.viz.repairs import by_fault, over_gaps, rate_map
+from motiondiff_edu.viz.walks import Rung, ladder
 
 from ..walks.ladder import VARIANTS as RUNGS
 
