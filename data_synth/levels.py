@@ -10,7 +10,8 @@ import scipy
 from jaxtyping import Float
 
 from motiondiff_edu.motion.directions import UPLEGS, unit
-from motiondiff_edu.motion.planting import on_feet, pelvis_ahead
+from motiondiff_edu.motion.inverse_kinematics import pelvis_ahead
+from motiondiff_edu.motion.planting import on_feet
 from motiondiff_edu.motion.skeleton import HEELS, HIPS, J
 
 LOWEST = 0.5  # m that the pelvis goes down, at most

@@ -12,8 +12,8 @@ from jaxtyping import Float
 
 from motiondiff_edu.motion.dance_frame import GROUND, Place, facing
 from motiondiff_edu.motion.directions import UPLEGS, unit
-from motiondiff_edu.motion.inverse_kinematics import descendants
-from motiondiff_edu.motion.planting import needed_drop, on_feet, pelvis_ahead
+from motiondiff_edu.motion.inverse_kinematics import descendants, pelvis_ahead
+from motiondiff_edu.motion.planting import needed_drop, on_feet
 from motiondiff_edu.motion.skeleton import HEELS, HIPS, J, joint_index
 
 from .levels import LEGS, wave

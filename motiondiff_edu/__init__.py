@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from .editing.masks import keyframes_of as keyframes
     from .motion.files import read_motion
     from .motion.motion import Motion
-    from .pretrained.by_name import load
+    from .pretrained.checkpoints import load
     from .pretrained.shipped import edit, inbetween, reconstruct
     from .widgets.motions import play
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 _FRONT_DOOR = {
     "Motion": (".motion.motion", "Motion"),
     "read_motion": (".motion.files", "read_motion"),
-    "load": (".pretrained.by_name", "load"),
+    "load": (".pretrained.checkpoints", "load"),
     "joystick": (".conditions.control", "joystick"),
     "keyframes": (".editing.masks", "keyframes_of"),
     "edit": (".pretrained.shipped", "edit"),

@@ -28,7 +28,7 @@ from motiondiff_edu.editing.by_words import STRENGTH
 from motiondiff_edu.motion.motion import MotionError
 from motiondiff_edu.motion.skeleton import JOINTS
 from motiondiff_edu.performers.dancer import USUAL_GUIDANCE
-from motiondiff_edu.pretrained import by_name, checkpoints
+from motiondiff_edu.pretrained import checkpoints
 
 ARM = "RightArm,RightForeArm,RightHand"
 
@@ -133,8 +133,8 @@ def no_work(folder, monkeypatch):
     def work(*_, **__):
         pytest.fail("it works before everything is checked", pytrace=False)
 
-    # md first: it keeps the function that it finds in by_name
-    for module, name in ((md, "load"), (by_name, "load"), (outputs, "read")):
+    # md first: it keeps the function that it finds in checkpoints
+    for module, name in ((md, "load"), (checkpoints, "load"), (outputs, "read")):
         monkeypatch.setattr(module, name, work)
     monkeypatch.setattr(checkpoints, "pretrained", work)
     return folder

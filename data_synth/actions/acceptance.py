@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 from jaxtyping import Float
 
-from motiondiff_edu.motion.planting import runs
+from motiondiff_edu.motion.cleanup import runs
 
 from ..walking.own_measures import bone_error, knee_angles, planted_slip
 from .acts import VERBS, Act, Phrase

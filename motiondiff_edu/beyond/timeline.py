@@ -25,7 +25,7 @@ import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
-from ..motion.planting import runs
+from ..motion.cleanup import runs
 from ..motion.root_frame import FPS
 
 LEGS = ("walk", "run", "back", "aside", "turn", "stand", "squat", "jump", "kick", "sit", "bow")

@@ -5,8 +5,10 @@
 The rows are the states after the last layer norm, and not the one vector that CLIP compares with
 pictures. CLIP has seen the words of the whole web, so no word is refused. Its weights are in no
 file of ours: they come from a folder, or from where `transformers` keeps what it has downloaded.
-Nothing is downloaded unless you ask for it: `load(name, download=True)`, once.
-Source: MoFusion 3.3; Radford and others, 2021.
+Nothing is downloaded unless you ask for it: `load(name, download=True)`, once. What a network adds
+is an MLP (`ClipEncoder`), which is trained and saved with it.
+Source: MoFusion 3.3, "we project the token embeddings using an MLP" (its sizes are ours); Radford
+and others, 2021.
 """
 
 from collections.abc import Iterator, Sequence
@@ -16,12 +18,48 @@ from pathlib import Path
 from typing import Any
 
 import torch
-from jaxtyping import Float, Int
-from torch import Tensor
+from jaxtyping import Bool, Float, Int
+from torch import Tensor, nn
 from torch.nn.utils.rnn import pad_sequence
 
-from .clip_encoder import ClipTokens
 from .text import Read, TextError, empty
+
+
+@dataclass(frozen=True, eq=False)
+class ClipTokens:
+    """Texts as CLIP's transformer leaves them, padded to the longest.
+
+    `mask` is True where there is a token. CLIP puts a mark before and after a text, so the empty
+    text has two.
+    """
+
+    hidden: Float[Tensor, "B M E"]
+    mask: Bool[Tensor, "B M"]
+
+    def __len__(self) -> int:
+        return len(self.mask)
+
+    def to(self, device: str | torch.device) -> "ClipTokens":
+        """The same tokens on another device."""
+        return ClipTokens(self.hidden.to(device), self.mask.to(device))
+
+
+class ClipEncoder(nn.Module):
+    """Tokens of CLIP (B, M, E) to tokens (B, M, C); each is projected by itself."""
+
+    def __init__(self, clip_width: int, width: int):
+        super().__init__()
+        self.mlp = nn.Sequential(
+            nn.Linear(clip_width, 2 * width), nn.GELU(), nn.Linear(2 * width, width)
+        )
+
+    def forward(self, texts: ClipTokens) -> Float[Tensor, "B M C"]:
+        return self.mlp(texts.hidden)
+
+    def tokens_of(self, texts: ClipTokens) -> tuple[Float[Tensor, "B M C"], Bool[Tensor, "B M"]]:
+        """The tokens of texts, and where there is one."""
+        return self(texts), texts.mask
+
 
 NAME = "openai/clip-vit-base-patch32"  # the usual one; the paper does not say which
 WIDTH = 512  # of its tokens

@@ -25,8 +25,8 @@ from ..motion.dance_frame import Place
 from ..motion.known import checked_given
 from ..motion.moving_frame import D
 from ..motion.root_frame import estimate_root
-from ..motion.size import leg_size
 from ..motion.skeleton import HIPS, TOES, J
+from ..performers.joined import leg_size
 from ..performers.mover import ETA, STEPS, Mover
 from ..performers.performer import Watch
 from ..performers.text_mofusion import Texts

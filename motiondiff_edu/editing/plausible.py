@@ -13,8 +13,8 @@ import numpy as np
 import torch
 from jaxtyping import Bool, Float
 
+from ..motion.cleanup import runs
 from ..motion.faults import WILD
-from ..motion.planting import runs
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HIPS, TOES
 

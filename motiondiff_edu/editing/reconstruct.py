@@ -18,11 +18,10 @@ from torch import Tensor
 from .. import reconstruction
 from ..beyond.back_with_known import FADE, blended_way_back
 from ..beyond.guidance import blended_guess
-from ..motion.cleanup import Body, clean_bones, clean_up
+from ..motion.cleanup import Body, clean_bones, clean_up, runs
 from ..motion.dance_frame import headings_between
 from ..motion.directions import ARMS, UPLEGS
 from ..motion.motion import MotionError, MotionWarning
-from ..motion.planting import runs
 from ..motion.root_frame import FPS, smoothed_root, to_root_frame, to_world
 from ..motion.scaler import Scaler
 from ..motion.skeleton import HIPS, JOINTS, J

@@ -14,8 +14,8 @@ import numpy as np
 import scipy
 from jaxtyping import Bool, Float
 
+from ..motion.cleanup import runs
 from ..motion.dance_frame import heading
-from ..motion.planting import runs
 from ..motion.root_frame import FPS
 from ..motion.skeleton import BONE_LENGTHS, HIPS, TOES, joint_index
 from .bodies import bone_lengths

@@ -24,9 +24,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from ..motion.checks import check_finite
+from ..motion.cleanup import runs
 from ..motion.dance_frame import facing
-from ..motion.finite import check_finite
-from ..motion.planting import runs
 from ..motion.root_frame import FPS, forward_left
 from ..motion.skeleton import HEELS, HIPS, TOES, joint_index
 

@@ -17,6 +17,7 @@ from .._files import replacing
 from . import recordings, registry
 from .aist import COCO, read_keypoints
 from .bvh.write import write_bvh
+from .check import lies_down, unit_of, unlike_a_body
 from .checks import check_there
 from .clip import Clip
 from .keypoints import motion_of_keypoints
@@ -25,9 +26,6 @@ from .motion import (
     MotionError,
     MotionWarning,
     checked_path,
-    lies_down,
-    unit_of,
-    unlike_a_body,
 )
 from .retarget import load_clip
 from .root_frame import FPS
@@ -175,11 +173,12 @@ def read_npz(path: Path) -> Motion:
             _note(path, f"the file has no `fps`; {FPS:g} frames/s are assumed")
         if "positions" in arrays:
             motion = _from_positions(arrays, source or path.stem)
-            unit, many = unit_of(motion)
+            unit, many = unit_of(motion.positions, motion.skeleton)
             if unit and not {"format", "root"} & arrays.keys():
                 motion = replace(motion, positions=motion.positions / many)
                 _note(path, f"the positions are in {unit}; they are read in metres")
-            words = unlike_a_body(motion) or lies_down(motion)
+            figure = motion.positions, motion.skeleton
+            words = unlike_a_body(*figure) or lies_down(*figure)
             if words:
                 _note(path, words)
             return motion

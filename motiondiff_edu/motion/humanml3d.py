@@ -23,8 +23,9 @@ import numpy as np
 from jaxtyping import Float
 
 from . import registry
+from .check import unlike_a_body
 from .checks import check_there
-from .motion import Motion, MotionError, MotionWarning, unlike_a_body
+from .motion import Motion, MotionError, MotionWarning
 from .root_frame import FPS, forward_left
 from .skeleton import BONE_LENGTHS, J, Skeleton, joint_index
 
@@ -361,7 +362,7 @@ def read_humanml3d(path: str | Path) -> Motion:
     path = Path(path)
     joints, what = joints_in(path)
     motion = Motion(to_course(joints), FPS, source=f"{path.stem} ({what})")
-    words = unlike_a_body(motion)
+    words = unlike_a_body(motion.positions, motion.skeleton)
     if words:
         warnings.warn(f"{path.name}: {words}", MotionWarning, stacklevel=3)
     return motion

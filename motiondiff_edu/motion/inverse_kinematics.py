@@ -16,11 +16,11 @@ import numpy as np
 from jaxtyping import Float
 
 from .directions import ARMS, SPINE1, UP, UPLEGS, least_turn, unit
-from .planting import pelvis_ahead, perpendicular, triangle
 from .skeleton import HEELS, HIPS, JOINTS, PARENTS, J
 
 Pose = Float[np.ndarray, "21 3"]
 Point = Float[np.ndarray, "3"]
+Length = float | Float[np.ndarray, "*T"]
 
 # fraction of its length to which a limb is stretched; a straight limb would have no side to bend to
 STRAIGHTEST = 0.9995
@@ -100,7 +100,7 @@ def limbs_bent(
 ) -> Float[np.ndarray, "T 3 3"]:
     """Root, middle and end of a limb in each frame, with the end at the target.
 
-    Two bones and a distance form a triangle (`planting.triangle`). The middle joint stays on its
+    Two bones and a distance form a triangle (`triangle`). The middle joint stays on its
     side, which turns with the line from root to end. A target out of reach is moved closer along
     the line from the root.
     """
@@ -246,6 +246,28 @@ def pelvis_moved(pose: Pose, shift: Point) -> Pose:
     for heel in HEELS:
         moved = ankles_dragged(moved[None], heel, pose[None, heel])[0]
     return moved
+
+
+def triangle(a: Length, b: Length, d: Length) -> tuple[Length, Length]:
+    """The place where two bones of lengths a and b meet, if their ends are d apart.
+
+    Returns the distance along the line between the ends, and the distance aside of it:
+    (a^2 - b^2 + d^2) / 2d and sqrt(a^2 - that^2), by the law of cosines.
+    """
+    along = (a**2 - b**2 + d**2) / (2 * d)
+    return along, np.sqrt(np.maximum(a**2 - along**2, 0.0))
+
+
+def pelvis_ahead(world: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 3"]:
+    """Unit vector in the direction that the hips face."""
+    return unit(np.cross(world[:, 1] - world[:, 5], world[:, 9] - world[:, 0]))
+
+
+def perpendicular(
+    vector: Float[np.ndarray, "T 3"], line: Float[np.ndarray, "T 3"]
+) -> Float[np.ndarray, "T 3"]:
+    """The part of a vector at right angles to a unit line."""
+    return vector - np.einsum("ti,ti->t", vector, line)[:, None] * line
 
 
 def _bone(pose: Pose, chain: list[int], target: Point) -> Point:

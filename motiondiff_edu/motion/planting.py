@@ -2,9 +2,11 @@
 
 import numpy as np
 import scipy
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Float
 
+from .cleanup import runs
 from .directions import unit
+from .inverse_kinematics import pelvis_ahead, perpendicular, triangle
 from .normalise import speed
 from .skeleton import BONE_LENGTHS, HEELS, TOES
 
@@ -26,25 +28,6 @@ def flat_feet(points: Float[np.ndarray, "T 21 3"], fps: float) -> Bool[np.ndarra
     """Feet whose toe and ankle both stand still: the sole lies on the floor."""
     toes, heels = points[:, list(TOES)], points[:, list(HEELS)]
     return (speed(toes, fps) < 0.3) & (speed(heels, fps) < 0.3) & (toes[..., 1] < 2 * LOW)
-
-
-Length = float | Float[np.ndarray, "*T"]
-
-
-def runs(mask: Bool[np.ndarray, "N"]) -> Int[np.ndarray, "n 2"]:
-    """First frame of every run of True, and the first frame after the run.  Notebook: 08"""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(int)))
-    return edges.reshape(-1, 2)
-
-
-def triangle(a: Length, b: Length, d: Length) -> tuple[Length, Length]:
-    """The place where two bones of lengths a and b meet, if their ends are d apart.
-
-    Returns the distance along the line between the ends, and the distance aside of it:
-    (a^2 - b^2 + d^2) / 2d and sqrt(a^2 - that^2), by the law of cosines.
-    """
-    along = (a**2 - b**2 + d**2) / (2 * d)
-    return along, np.sqrt(np.maximum(a**2 - along**2, 0.0))
 
 
 def shift_to_pins(
@@ -112,11 +95,6 @@ def on_feet(
     return moved
 
 
-def pelvis_ahead(world: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 3"]:
-    """Unit vector in the direction that the hips face."""
-    return unit(np.cross(world[:, 1] - world[:, 5], world[:, 9] - world[:, 0]))
-
-
 def needed_drop(
     hips: Float[np.ndarray, "T 2 3"], ankles: Float[np.ndarray, "T 2 3"], fps: float
 ) -> Float[np.ndarray, " T"]:
@@ -148,10 +126,3 @@ def solve_leg(
     side = unit(side + np.maximum(0.02 - forward, 0)[:, None] * front)
     knee = hip + along[:, None] * line + height[:, None] * side  # type: ignore[index]  # arrays
     return knee, hip + distance[:, None] * line
-
-
-def perpendicular(
-    vector: Float[np.ndarray, "T 3"], line: Float[np.ndarray, "T 3"]
-) -> Float[np.ndarray, "T 3"]:
-    """The part of a vector at right angles to a unit line."""
-    return vector - np.einsum("ti,ti->t", vector, line)[:, None] * line

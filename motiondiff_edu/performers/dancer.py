@@ -30,12 +30,11 @@ from ..motion.checks import (
 from ..motion.cleanup import Body, clean_up
 from ..motion.dance_frame import to_positions
 from ..motion.motion import Motion, MotionWarning
-from ..motion.progress import bar
 from ..motion.retarget import SHORTEST
 from ..motion.scaler import Scaler
 from .dance_windows import FPS, mel_frames
 from .networks import register
-from .performer import Performer, Watch, evaluating, generators, sampled
+from .performer import Performer, Watch, bar, evaluating, generators, sampled
 
 STEPS, ETA = 50, 1.0  # defaults of DDIM; with less fresh noise, dances to a song differ less
 # chosen on other songs than those of docs/RESULTS.md

@@ -3,9 +3,15 @@
 A walker that gets a pose unlike its training begins with one that it knows: a joint may move by
 half a metre from the last given frame to the first new one. So it is in nearly all recordings. The
 clean-up blends the seam (`motion/cleanup`); where a joint would jump far, a warning says so.
+
+
+The size of a figure, and the same motion at another size.
+
+Networks know figures of one size, the course's. A child that keeps its own size would float over
+the floor in what they generate: its legs are too short for the height of the pelvis.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
@@ -16,9 +22,10 @@ from ..conditions.control import splice
 from ..metrics.keyframes import AROUND, seam_step
 from ..motion.cleanup import clean_up
 from ..motion.motion import Motion, MotionError
+from ..motion.planting import SHANK, THIGH
 from ..motion.root_frame import FPS, root_path, to_world
 from ..motion.scaler import Scaler
-from ..motion.skeleton import JOINTS, J
+from ..motion.skeleton import JOINTS, PARENTS, J, joint_index
 
 # m in a frame more than in the two frames on either side: a jump at the seam that is said; from a
 # synthetic walk no joint goes 3 cm farther
@@ -153,3 +160,25 @@ def farthest(unlike: dict[str, float]) -> str:
     """The joints that are farthest from the training, in brackets."""
     most = [f"{name} {far:.1f}" for name, far in list(unlike.items())[:NAMED]]
     return f"(standard deviations away: {', '.join(most)})"
+
+
+LEGS = [joint_index(f"{side}{part}") for side in ("Left", "Right") for part in ("Leg", "Foot")]
+SAME = 1e-3  # a size that differs from 1 by less is 1
+
+
+def leg_size(positions: Float[np.ndarray, "T 21 3"]) -> float:
+    """How long the legs are, over those of the course's skeleton; missing joints do not count.
+
+    Thigh and shank of both legs; the median over frames. 1 where no leg is given.
+    """
+    long = np.linalg.norm(positions[:, LEGS] - positions[:, PARENTS[LEGS]], axis=-1).sum(-1)
+    if not np.isfinite(long).any():
+        return 1.0
+    size = float(np.nanmedian(long) / (2 * (THIGH + SHANK)))
+    return 1.0 if abs(size - 1) < SAME else size
+
+
+def resized(motion: Motion, factor: float) -> Motion:
+    """The motion with all lengths times `factor`: a figure of another size, and its path."""
+    root = None if motion.root is None else motion.root * [factor, factor, 1.0]
+    return replace(motion, positions=factor * motion.positions, root=root)

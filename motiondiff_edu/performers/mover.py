@@ -29,12 +29,11 @@ from ..motion.checks import (
 from ..motion.cleanup import Body, clean_up
 from ..motion.motion import Motion, MotionWarning
 from ..motion.moving_frame import D, to_features, to_positions
-from ..motion.progress import bar
 from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 from ..motion.skeleton import BONE_LENGTHS
 from .described_windows import GRID
-from .performer import Performer, Watch, evaluating, generators, sampled
+from .performer import Performer, Watch, bar, evaluating, generators, sampled
 from .planned_mofusion import PlannedMoFusion
 from .text_mofusion import Texts
 

@@ -1,19 +1,22 @@
-"""What all performers share: a network and its noise schedule, and sampling."""
+"""What all performers share: a network and its noise schedule, sampling, and a progress bar."""
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from functools import partial
+from typing import TypeVar
 
 import numpy as np
 import torch
 from jaxtyping import Float
 from torch import Tensor, nn
+from tqdm.auto import tqdm
 
 from ..ddpm import Denoiser, Generators, Schedule, Step, ddim_steps, final, sample_steps
 from ..motion.checks import checked_seed
 from ..prediction import denoiser_of
 from .networks import Config
 
-Watch = Callable[[Iterable[Step]], Iterable[Step]]  # wraps a loop, as `motion.progress.bar` does
+Watch = Callable[[Iterable[Step]], Iterable[Step]]  # wraps a loop, as `bar` does
 
 
 def generators(seed: int, count: int, *also: int) -> list[torch.Generator]:
@@ -116,3 +119,25 @@ class Performer:
                 return network(x_s, s, *given)
 
         return denoiser_of(evaluated, self.schedule, self.config.target)
+
+
+DELAY = 1.0  # seconds before it appears: a shorter computation shows no bar
+Record = TypeVar("Record")
+
+
+def bar(
+    what: str, total: int | None = None, shown: bool = True
+) -> Callable[[Iterable[Record]], Iterator[Record]]:
+    """A function that gives a loop a bar with these words; the bar disappears at the end.
+
+    `total`: the number of the loop's records. No bar is shown when the output is not a terminal.
+    """
+    return partial(
+        tqdm,
+        desc=what,
+        total=total,
+        delay=DELAY,
+        mininterval=0.5,
+        leave=False,
+        disable=None if shown else True,
+    )

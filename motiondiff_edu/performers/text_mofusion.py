@@ -13,7 +13,7 @@ from torch import Tensor, nn
 
 from ..beyond.self_attention import DEPTH, SelfAttendingMoFusion
 from ..conditions import clip as clips
-from ..conditions.clip_encoder import ClipEncoder, ClipTokens
+from ..conditions.clip import ClipEncoder, ClipTokens
 from ..conditions.text import MOST_WORDS
 from ..conditions.word_encoder import WordEncoder
 from ..mofusion import Memory, MoFusionConfig, Music

@@ -18,17 +18,16 @@ from ..beyond.footholds import FootholdConfig, FootholdMoDiff
 from ..conditions.control import as_long
 from ..ddpm import Denoiser, Generators, Schedule, ddim_steps, draw, final, sample_steps
 from ..modiff import MoDiff, MoDiffConfig
+from ..motion.check import lies_down
 from ..motion.checks import checked_samples, checked_seconds, checked_steps
-from ..motion.motion import Motion, MotionError, MotionWarning, as_motion, lies_down
-from ..motion.progress import bar
+from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
 from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
-from ..motion.size import leg_size, resized
 from ..motion.skeleton import J
 from ..rollout import WindowSampler
-from .joined import Start, change_of, in_words, joined, unlike_training
+from .joined import Start, change_of, in_words, joined, leg_size, resized, unlike_training
 from .networks import register
-from .performer import Performer, generators
+from .performer import Performer, bar, generators
 
 STEPS = 10  # default of DDIM: as good as DDPM with all steps, and ten times as fast (RESULTS)
 
@@ -91,7 +90,7 @@ class Walker(Performer):
         Source: MoDiff Alg. 2.  Notebook: 00
         """
         as_motion(motion).check_whole()
-        if words := lies_down(motion):
+        if words := lies_down(motion.positions):
             raise MotionError(f"{motion.name}: {words}")
         count, T_h = checked_samples(samples), self.config.T_h
         steps = checked_steps(steps, self.schedule.S)

@@ -30,8 +30,16 @@ from ..performers.inbetweener import Inbetweener
 from ..performers.mover import Mover
 from ..performers.networks import kind_of, networks_of
 from ..performers.walker import Walker
-from .eight_bits import halved, pack, unpack
-from .weights_file import CheckpointError, check_sizes, config_of, read_weights, write_weights
+from .weights_file import (
+    CheckpointError,
+    check_sizes,
+    config_of,
+    halved,
+    pack,
+    read_weights,
+    unpack,
+    write_weights,
+)
 
 __all__ = [
     "CheckpointError",
@@ -75,7 +83,7 @@ STORED = {8: pack, 16: halved, 32: dict}
 def save(figure: AnyPerformer, path: str | Path, bits: int = 16) -> Path:
     """Write a performer: weights, scalers, schedule.
 
-    Weights are stored as float16; `bits=32` leaves them unchanged, `bits=8` uses `eight_bits`.
+    Weights are stored as float16; `bits=32` leaves them unchanged, `bits=8` is `weights_file.pack`.
 
     NAME.json, the card, is written beside NAME.safetensors. Both get a temporary name first.
     Raises ValueError for other numbers of bits or another ending, for what is no performer, for
@@ -123,15 +131,21 @@ def bits_of(path: str | Path) -> int:
     return 8 if "I8" in kinds else 16 if "F16" in kinds else 32
 
 
-def load(path: str | Path, clip: Clip | str | Path | None = None) -> AnyPerformer:
-    """Read a performer, whichever it is.
+def load(name: str | Path, clip: Clip | str | Path | None = None) -> AnyPerformer:
+    """A performer: shipped weights by name ("walker", "dancer", "mover" ...), or your own file.
 
-    `clip`: for a mover that reads by CLIP, that CLIP or its folder; without it the CLIP is looked
-    for by the name in the file (`conditions.clip.load`), on this machine.
-    Raises CheckpointError for a file that is missing, damaged, or not one of ours, and for a CLIP
-    that is missing or another one.
+    `clip`: for your own mover that reads by CLIP, that CLIP or its folder; without it the CLIP is
+    looked for by the name in the file (`conditions.clip.load`), on this machine.
+    Raises CheckpointError for an unknown name, with a list of the names, for a file that is
+    missing, damaged, or not one of ours, for a CLIP that is missing or another one, and for `clip`
+    with shipped weights, none of which reads by CLIP.
+    Notebook: 00
     """
-    return _read(path, *KINDS, clip=clip)
+    if isinstance(name, Path) or Path(name).suffix or Path(name).parent.name:
+        return _read(name, *KINDS, clip=clip)
+    if clip is not None and name in available():
+        raise CheckpointError(f"the shipped {name!r} does not read by CLIP: leave `clip` out")
+    return pretrained(name)
 
 
 def load_walker(path: str | Path) -> Walker:

@@ -28,8 +28,7 @@ from .checkpoints import (
     weights_of,
     with_weights,
 )
-from .eight_bits import pack
-from .weights_file import LARGEST, check_sizes, read_weights, write_weights
+from .weights_file import LARGEST, check_sizes, pack, read_weights, write_weights
 
 FORMAT = "motiondiff_edu judge 1"
 GRID = 4  # frames: the network halves a motion twice

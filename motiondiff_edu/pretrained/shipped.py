@@ -19,12 +19,11 @@ from ..motion.checks import checked_count, checked_samples, checked_seed, checke
 from ..motion.cleanup import Body, clean_up, floor_under
 from ..motion.known import checked_known
 from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
-from ..motion.progress import bar
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HIPS, TOES
 from ..performers.inbetweener import STEPS, Inbetweener
 from ..performers.mover import LONGEST, SHORTEST, Mover
-from ..performers.performer import generators
+from ..performers.performer import bar, generators
 from ..performers.walker import Walker
 from . import checkpoints
 

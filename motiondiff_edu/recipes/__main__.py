@@ -10,8 +10,7 @@ from pathlib import Path
 import torch
 
 from ..conditions import clip as clips
-from ..pretrained.by_name import load
-from ..pretrained.checkpoints import AnyPerformer, save
+from ..pretrained.checkpoints import AnyPerformer, load, save
 from ..pretrained.judges import save_judge
 from .dancers import DANCE_RECIPES, SHIPPED_DANCERS
 from .ear import TrainedEar, ear_within

@@ -11,7 +11,7 @@ from jaxtyping import Float, Int
 from matplotlib.figure import Figure
 
 from ..beyond.timeline import ARMS, LEGS, MIDDLE, TO_COME, VERBS
-from ..motion.planting import runs
+from ..motion.cleanup import runs
 from ..motion.root_frame import FPS
 from .style import OKABE_ITO, SMALL, figure
 

@@ -10,9 +10,9 @@ import numpy as np
 from jaxtyping import Bool, Float
 from PIL import Image, ImageDraw, ImageFont
 
-from ..motion.progress import bar
 from ..motion.root_frame import FPS
 from ..motion.skeleton import BONES, HEELS, TOES
+from ..performers.performer import bar
 from ..viz import body
 
 TRAIL = 1200  # frames of the root's trail in a picture: a film of all would cost their square

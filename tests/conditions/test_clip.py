@@ -11,7 +11,7 @@ import torch
 from transformers import BertConfig, BertModel, CLIPTextModel
 
 from motiondiff_edu.conditions import clip
-from motiondiff_edu.conditions.clip_encoder import ClipEncoder, ClipTokens
+from motiondiff_edu.conditions.clip import ClipEncoder, ClipTokens
 from motiondiff_edu.conditions.text import Read, TextError
 
 # the last has no word of the tokenizer, and is spelled: w i g g l e s

@@ -8,7 +8,7 @@ import pytest
 from data_synth.walking import random_control, walk
 from motiondiff_edu.editing.masks import body_part, gap, keyframes
 from motiondiff_edu.metrics.bodies import bone_lengths
-from motiondiff_edu.motion.cleanup.bones import PELVIS, TRUNK, Body, clean_bones
+from motiondiff_edu.motion.cleanup import PELVIS, TRUNK, Body, clean_bones
 from motiondiff_edu.motion.skeleton import joint_index
 
 

@@ -10,10 +10,8 @@ from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.metrics.bodies import bone_lengths
 from motiondiff_edu.metrics.keyframes import seam_step
 from motiondiff_edu.metrics.walks import skating
-from motiondiff_edu.motion.cleanup import Body, clean_up, floor_under
-from motiondiff_edu.motion.cleanup.feet import FARTHEST
+from motiondiff_edu.motion.cleanup import FARTHEST, Body, clean_up, floor_under, runs
 from motiondiff_edu.motion.motion import Motion
-from motiondiff_edu.motion.planting import runs
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, TOES
 
 FPS = 20

@@ -7,13 +7,13 @@ from data_synth.walking import walk
 from motiondiff_edu.editing.masks import body_part, gap, keyframes
 from motiondiff_edu.metrics.bodies import bone_lengths
 from motiondiff_edu.metrics.walks import skating
-from motiondiff_edu.motion.cleanup.feet import (
+from motiondiff_edu.motion.cleanup import (
     CLEARANCE,
     FARTHEST,
-    LONGEST,
     SAME,
     SHARE,
     SLOW,
+    SOON,
     kept_places,
     lift_to_floor,
     lock_feet,
@@ -179,9 +179,9 @@ def test_a_toe_that_is_given_twice_at_one_place_has_not_left_it():
     elsewhere = toe + np.linspace(0, 1.1 * SAME, 21)[:, None]
     assert np.array_equal(kept_places(elsewhere, ends), elsewhere)
     assert np.array_equal(kept_places(toe, np.arange(21) < 1), toe)
-    long = np.resize(toe, (LONGEST + 2, 3))
+    long = np.resize(toe, (SOON + 2, 3))
     long[-1] = long[0]
-    late = np.arange(len(long)) % (LONGEST + 1) == 0
+    late = np.arange(len(long)) % (SOON + 1) == 0
     assert late.sum() == 2 and np.array_equal(kept_places(long, late), long)
 
 

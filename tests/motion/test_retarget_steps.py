@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from synthetic_walk import walk
 
+from motiondiff_edu.motion.cleanup import runs
 from motiondiff_edu.motion.directions import rest_lean
 from motiondiff_edu.motion.normalise import (
     MotionWarning,
@@ -13,7 +14,7 @@ from motiondiff_edu.motion.normalise import (
     rotate_y_up,
     unmirror,
 )
-from motiondiff_edu.motion.planting import find_contacts, plant, runs, shift_to_pins, solve_leg
+from motiondiff_edu.motion.planting import find_contacts, plant, shift_to_pins, solve_leg
 from motiondiff_edu.motion.retarget import warn_sunk
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, HEELS, OFFSETS, PARENTS, TOES, joint_index
 

@@ -5,8 +5,8 @@ import pytest
 
 import motiondiff_edu as md
 from data_synth.walking import walk
-from motiondiff_edu.motion.size import leg_size, resized
 from motiondiff_edu.motion.skeleton import joint_index
+from motiondiff_edu.performers.joined import leg_size, resized
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from small_movers import mover_of
 
 import motiondiff_edu as md
 from motiondiff_edu.conditions import clip
-from motiondiff_edu.conditions.clip_encoder import ClipTokens
+from motiondiff_edu.conditions.clip import ClipTokens
 from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.performers.described_windows import DescribedWindows, exchanged_sides
 from motiondiff_edu.performers.mover import Mover

@@ -12,7 +12,7 @@ from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.metrics.bodies import bone_lengths
 from motiondiff_edu.metrics.keyframes import seam_over_motion, seam_step
 from motiondiff_edu.metrics.walks import skating
-from motiondiff_edu.motion.cleanup.seam import LONGEST
+from motiondiff_edu.motion.cleanup import LONGEST
 from motiondiff_edu.motion.inverse_kinematics import drag
 from motiondiff_edu.motion.motion import Motion, MotionWarning
 from motiondiff_edu.motion.root_frame import control_from_path, to_root_frame

@@ -34,7 +34,7 @@ ROLLING = (
     "performers/performer.py",
     "performers/walker.py",
     "pretrained/checkpoints.py",
-    "pretrained/eight_bits.py",
+    "pretrained/weights_file.py",
     "pretrained/weights_file.py",
 )
 
