@@ -18,7 +18,7 @@ __version__ = "0.1.0"
 if TYPE_CHECKING:
     from .conditions.control import joystick
     from .editing.masks import keyframes_of as keyframes
-    from .motion.files import read_motion
+    from .motion.files import read_motion, read_motions
     from .motion.motion import Motion
     from .pretrained.checkpoints import load
     from .pretrained.shipped import edit, inbetween, reconstruct
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 _FRONT_DOOR = {
     "Motion": (".motion.motion", "Motion"),
     "read_motion": (".motion.files", "read_motion"),
+    "read_motions": (".motion.files", "read_motions"),
     "load": (".pretrained.checkpoints", "load"),
     "joystick": (".conditions.control", "joystick"),
     "keyframes": (".editing.masks", "keyframes_of"),
@@ -46,6 +47,7 @@ __all__ = [
     "load",
     "play",
     "read_motion",
+    "read_motions",
     "reconstruct",
 ]
 

@@ -471,7 +471,8 @@ def test_importing_it_imports_nothing_heavy():
 
 def test_every_name_of_the_front_door_is_there():
     assert sorted(md.__all__) == sorted(
-        "Motion read_motion load joystick keyframes inbetween reconstruct edit play".split()
+        "Motion read_motion read_motions load joystick keyframes inbetween reconstruct edit "
+        "play".split()
     )
     assert all(callable(getattr(md, name)) for name in md.__all__)
     with pytest.raises(AttributeError, match="no attribute 'dance'"):

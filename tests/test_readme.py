@@ -6,6 +6,7 @@ import shlex
 import numpy as np
 import pytest
 import soundfile
+from code_blocks import blocks
 from PIL import Image
 
 import motiondiff_edu as md
@@ -20,19 +21,15 @@ from motiondiff_edu.motion.retarget import load_clip
 from motiondiff_edu.pretrained.checkpoints import available
 
 TEACHERS = ("TEACHING", "QUESTIONS", "CAPSTONE", "PILOT", "GLOSSARY")
-PAGES = ["README.md", *(f"docs/{name}.md" for name in ("INSTALL", "USING", "BLENDER", *TEACHERS))]
+PAGES = [
+    "README.md",
+    *(f"docs/{name}.md" for name in ("INSTALL", "USING", "EXTENDING", "BLENDER", *TEACHERS)),
+]
 WALKED, SUNG = 2.0, 2.0  # seconds of the stand-ins
 SHIPPED = {"walker", "dancer", "inbetweener"}
 pytestmark = pytest.mark.skipif(
     not SHIPPED <= set(available()), reason="not all weights are shipped: run make pretrained"
 )
-
-
-def blocks(root, page: str, language: str) -> list[str]:
-    """The code blocks of a page in one language; "" for those without."""
-    text = (root / page).read_text(encoding="utf-8")
-    found = re.findall(r"^```(\w*)\n(.*?)^```$", text, re.M | re.S)
-    return [code for kind, code in found if kind == language]
 
 
 @pytest.fixture

@@ -61,7 +61,9 @@ def splice(
     return np.concatenate([past[len(past) - T_h : -1], new[:1], new])
 
 
-def as_long(control: Float[np.ndarray, "n 3"], rows: int | None) -> Float[np.ndarray, "m 3"]:
+def as_long(
+    control: Float[np.ndarray, "n C"], rows: int | None, columns: int = 3
+) -> Float[np.ndarray, "m C"]:
     """A control of `rows` rows: cut, or continued by its last row; None keeps its length.
 
     Raises ValueError for another shape, no row, and rows that are not finite.
@@ -72,10 +74,11 @@ def as_long(control: Float[np.ndarray, "n 3"], rows: int | None) -> Float[np.nda
             "joystick([(seconds, forward, left, turning), ...]) makes one"
         )
     array = np.array(np.asarray(control), np.float64)
-    if array.ndim != 2 or array.shape[1] != 3 or not len(array):
+    if array.ndim != 2 or array.shape[1] != columns or not len(array):
         raise ValueError(
-            f"a control is (rows, 3): forward m/s, left m/s, turning rad/s, {FPS:g} rows a second; "
-            f"this is {array.shape}. joystick([(seconds, forward, left, turning), ...]) makes one"
+            f"a control is (rows, {columns}): forward m/s, left m/s, turning rad/s"
+            f"{f', {columns - 3} of your own' if columns > 3 else ''}, {FPS:g} rows a second; this "
+            f"is {array.shape}. joystick([(seconds, forward, left, turning), ...]) makes one"
         )
     bad = np.flatnonzero(~(np.abs(array) <= FASTEST).all(1))
     if len(bad):

@@ -25,8 +25,10 @@ _FLIP_CONTROL = np.array([1.0, -1.0, -1.0])  # control: forward stays, left and 
 def mirror(clip: Clip) -> Clip:
     """The clip seen in a mirror: every joint's x is negated, left and right are exchanged.
 
-    The contacts of the feet are exchanged too. Mirroring twice is the identity.  Notebook: 01
+    The contacts of the feet are exchanged too. Mirroring twice is the identity.
+    Raises ValueError for a control with columns of your own.  Notebook: 01
     """
+    _check_control(clip)
     # torch accepts no array with a negative stride
     contacts = None if clip.contacts is None else clip.contacts[:, ::-1].copy()
     return replace(
@@ -36,6 +38,14 @@ def mirror(clip: Clip) -> Clip:
         contacts=contacts,
         info=_without_places(clip),
     )
+
+
+def _check_control(clip: Clip) -> None:
+    if clip.control.shape[1] != 3:
+        raise ValueError(
+            f"clip {clip.source!r} has {clip.control.shape[1]} columns of control, and only three "
+            "are known to change their signs: mirror or reverse it first, then add your own"
+        )
 
 
 def _without_places(clip: Clip) -> dict:
@@ -50,8 +60,10 @@ def reverse_time(clip: Clip) -> Clip:
 
     Reversing twice is the identity, except for the last row of control: it repeats the row before
     by convention.
+    Raises ValueError for a control with columns of your own.
     Source: MoDiff III-E.  Notebook: 01
     """
+    _check_control(clip)
     control = np.empty_like(clip.control)
     control[:-1] = -clip.control[:-1][::-1]
     control[-1] = control[-2] if len(clip) > 1 else -clip.control[-1]

@@ -16,12 +16,13 @@ from .root_frame import FPS, to_world
 class Clip:
     """Poses in the root frame (metres), control (m/s, m/s, rad/s), and what is known about them.
 
+    Further columns of the control are a condition of your own (docs/EXTENDING.md).
     `source` names the recording (or the seed) that the clip was cut from; splits are made by it.
     Notebook: 01
     """
 
     poses: Float[np.ndarray, "T 21 3"]
-    control: Float[np.ndarray, "T 3"]
+    control: Float[np.ndarray, "T C"]
     fps: float = FPS
     contacts: Bool[np.ndarray, "T 2"] | None = None  # left, right foot planted
     source: str = ""
@@ -41,7 +42,7 @@ class Clip:
         self, start: tuple[float, float, float] = (0.0, 0.0, 0.0)
     ) -> Float[np.ndarray, "T 21 3"]:
         """Positions in the world, the root starting at `start` = (x, z, heading)."""
-        return to_world(self.poses, self.control, start, self.fps)
+        return to_world(self.poses, self.control[:, :3], start, self.fps)
 
     def features(self) -> Float[np.ndarray, "T 63"]:
         """The 63 features per frame that the networks take, in float32."""

@@ -84,10 +84,11 @@ def read_motion(
 
 
 def read_motions(folder: str | Path) -> list[Motion]:
-    """Every file of a folder, and of the folders in it, that `read_motion` reads, by their names.
+    """The motions of a folder, and of the folders in it, that a network can be trained on.
 
-    A MotionWarning names each file that cannot be read, and says why.
-    Raises MotionError if the folder does not exist, or no file in it can be read.
+    They are in the order of their names. A MotionWarning names each file that `read_motion` cannot
+    read, or in which a joint is missing, and says why.
+    Raises MotionError if the folder does not exist, or no file in it can be used.
     """
     folder = Path(folder)
     if not folder.is_dir():
@@ -98,12 +99,15 @@ def read_motions(folder: str | Path) -> list[Motion]:
         if path.suffix.lower() not in endings or not path.is_file():
             continue
         try:
-            found.append(read_motion(path))
+            motion = read_motion(path)
+            motion.check_whole()
+            found.append(motion)
         except ValueError as error:
-            warnings.warn(f"left out: {error}", MotionWarning, stacklevel=2)
+            file = "" if path.name in str(error) else f"{path.name}: "
+            warnings.warn(f"left out: {file}{error}", MotionWarning, stacklevel=2)
     if not found:
         raise MotionError(
-            f"no file in {folder} could be read as a motion; {', '.join(sorted(endings))} can"
+            f"no file in {folder} could be used as a motion; {', '.join(sorted(endings))} can"
         )
     return found
 

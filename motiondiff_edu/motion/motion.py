@@ -80,7 +80,7 @@ class Motion:
     @classmethod
     def of_clip(cls, clip: Clip, start: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> "Motion":
         """A clip in the world, its root starting at `start` (x, z, heading)."""
-        place, heading = root_path(clip.control, start, clip.fps)
+        place, heading = root_path(clip.control[:, :3], start, clip.fps)
         root = np.concatenate([place, heading[:, None]], axis=1)
         return cls(clip.world(start), clip.fps, COURSE, root, clip.contacts, source=clip.source)
 

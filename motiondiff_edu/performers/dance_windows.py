@@ -106,10 +106,14 @@ class DanceWindows:
 
     @classmethod
     def of_motions(
-        cls, motions: Sequence[Motion], mels: Sequence[Float[Tensor, "_ C"]], n: int = 100
+        cls,
+        motions: Sequence[Motion],
+        mels: Sequence[Float[Tensor, "_ C"]] | None = None,
+        n: int = 100,
     ) -> "DanceWindows":
         """Windows of motions and the log-Mel of their songs, which begin with their first frames.
 
+        `mels` as in `of`.
         Contacts are found where a motion has none.
         Raises MotionError for a motion at another rate than 20 frames/s, with missing joints or
         with another skeleton, and ValueError as `of`.

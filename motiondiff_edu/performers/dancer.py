@@ -3,7 +3,6 @@
 Source: MoFusion 3, 4.1, Fig. 1.  Notebook: 00, 12
 """
 
-import copy
 import warnings
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -58,12 +57,6 @@ class Dancer(Performer):
     motion_scaler: Scaler
     mel_scaler: Scaler
     card: dict = field(default_factory=dict)
-
-    def to(self, device: str | torch.device) -> "Dancer":
-        """The same dancer on another device; it moves the music there itself."""
-        model = copy.deepcopy(self.model).to(device)
-        scalers = self.motion_scaler.to(device), self.mel_scaler.to(device)
-        return Dancer(model, self.schedule, *scalers, self.card)
 
     @property
     def device(self) -> torch.device:

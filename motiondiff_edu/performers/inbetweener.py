@@ -9,7 +9,6 @@ Source: MoFusion 3.3, Fig. 3, and 4.4; the further inputs after CondMDI (Cohan a
 Notebook: 15
 """
 
-import copy
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
@@ -106,11 +105,6 @@ class Inbetweener(Performer):
     schedule: Schedule
     motion_scaler: Scaler
     card: dict = field(default_factory=dict)
-
-    def to(self, device: str | torch.device) -> "Inbetweener":
-        """The same in-betweener on another device; it moves motions there itself."""
-        model = copy.deepcopy(self.model).to(device)
-        return Inbetweener(model, self.schedule, self.motion_scaler.to(device), self.card)
 
     def denoiser(self, lines: GivenLines) -> Denoiser:
         """`denoise(r_s, s) -> eps_hat` for remainders around these lines."""

@@ -4,7 +4,6 @@ Source: MoFusion 3, 4.2, Fig. 1, Fig. 6.
 Notebook: 16, 17
 """
 
-import copy
 import warnings
 from dataclasses import dataclass, field
 
@@ -75,11 +74,6 @@ class Mover(Performer):
             raise ValueError("the network reads words of its own, and takes no CLIP")
         if self.clip is not None:
             check(self.clip, self.config.clip_width, self.card.get("clip_sample"))
-
-    def to(self, device: str | torch.device) -> "Mover":
-        """The same mover on another device."""
-        model = copy.deepcopy(self.model).to(device)
-        return Mover(model, self.schedule, self.motion_scaler.to(device), self.card, self.clip)
 
     @property
     def device(self) -> torch.device:

@@ -5,6 +5,7 @@ After one call of `register`, your own network is built, saved and loaded like o
     register("walker", MyNetwork, MyConfig)
     save(Walker(MyNetwork(MyConfig()), schedule, poses, control), "mine.safetensors")
     load("mine.safetensors")        # another program must register it first, too
+docs/EXTENDING.md has a complete example.
 Notebook: 07
 """
 

@@ -1,7 +1,9 @@
 """What all performers share: a network and its noise schedule, sampling, and a progress bar."""
 
+import copy
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 from typing import TypeVar
 
@@ -13,9 +15,11 @@ from tqdm.auto import tqdm
 
 from ..ddpm import Denoiser, Generators, Schedule, Step, ddim_steps, final, sample_steps
 from ..motion.checks import checked_seed
+from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
 from .networks import Config
 
+Own = TypeVar("Own")  # the class of a performer, or of one made of it
 Watch = Callable[[Iterable[Step]], Iterable[Step]]  # wraps a loop, as `bar` does
 
 
@@ -100,6 +104,12 @@ class Performer:
             article = "an" if this[0] in "aeiou" else "a"
             raise AttributeError(f"{article} {this} cannot {name}; md.load({verbs[name]!r}) can")
         return object.__getattribute__(self, name)  # the usual error, or that inside a property
+
+    def to(self: Own, device: str | torch.device) -> Own:
+        """The same performer on another device; it moves there what it is given."""
+        units = {name: one for name, one in vars(self).items() if isinstance(one, Scaler)}
+        moved = {name: one.to(device) for name, one in units.items()}
+        return replace(self, model=copy.deepcopy(self.model).to(device), **moved)
 
     @property
     def config(self) -> Config:

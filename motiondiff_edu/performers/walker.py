@@ -4,7 +4,6 @@
 on tensors in the root frame.  Notebook: 00, 07
 """
 
-import copy
 import warnings
 from dataclasses import dataclass, field
 
@@ -50,21 +49,10 @@ class Walker(Performer):
     control_scaler: Scaler
     card: dict = field(default_factory=dict)
 
-    def to(self, device: str | torch.device) -> "Walker":
-        """The same walker on another device; `rollout.generate` moves past and control there."""
-        model = copy.deepcopy(self.model).to(device)
-        return Walker(
-            model,
-            self.schedule,
-            self.pose_scaler.to(device),
-            self.control_scaler.to(device),
-            self.card,
-        )
-
     def walk(
         self,
         motion: Motion,
-        control: Float[np.ndarray, "n 3"],
+        control: Float[np.ndarray, "n C"],
         *,
         seconds: float | None = None,
         samples: int = 1,
@@ -79,7 +67,8 @@ class Walker(Performer):
         that stand do not slide (`motion/cleanup`; `rollout.generate` has the network's own).
         Other body sizes work: the motion is scaled to the course's figure, and scaled back.
 
-        control  forward m/s, left m/s, turning rad/s; 20 rows a second
+        control  forward m/s, left m/s, turning rad/s; 20 rows a second. A network with more columns
+                 (C > 3) takes its own after these; their first row also stands for the past
         seconds  cut the control to this length, or hold its last row (default: keep its length)
         samples  above 1: a list with this many continuations; the first is that of samples=1
         steps    of DDIM, or None for DDPM with all steps, and noise of variance beta_s
@@ -96,10 +85,12 @@ class Walker(Performer):
         steps = checked_steps(steps, self.schedule.S)
         length = None if seconds is None else round(checked_seconds(seconds) * FPS)
         size = leg_size(motion.positions)
-        ahead = as_long(control, length) / [size, size, 1.0]
-        start = Start.of(resized(motion.resampled(FPS), 1 / size), ahead, T_h)
+        ahead = as_long(control, length, self.config.C)
+        ahead[:, :2] /= size
+        start = Start.of(resized(motion.resampled(FPS), 1 / size), ahead[:, :3], T_h)
+        own = np.concatenate([ahead[:1, 3:].repeat(T_h, axis=0), ahead[:, 3:]])
         past = torch.from_numpy(start.past).float().flatten(1)
-        steer = torch.from_numpy(start.control).float()
+        steer = torch.from_numpy(np.hstack([start.control, own])).float()
         rollout.check_range(steer[None], T_h, self.card.get("control_range"), size)
         poses, velocities = self._in_units(past, steer, count)
         loop = rollout.rollout_steps(

@@ -7,10 +7,10 @@ Notebook: 13
 from dataclasses import dataclass, replace
 
 from ..baselines.hearing_transformer import HearingTransformerConfig
-from ..baselines.transformer import TransformerConfig
 from ..kinematic_loss import KinematicWeights
-from ..mofusion import MOFUSION_FULL, MOFUSION_SMALL, MoFusionConfig
+from ..mofusion import MOFUSION_FULL, MOFUSION_SMALL
 from ..performers.hearing_mofusion import HearingConfig
+from ..performers.networks import Config
 from .ear import EAR, EarRecipe
 
 KINEMATIC = KinematicWeights(
@@ -41,7 +41,7 @@ class DanceRecipe:
     """
 
     name: str
-    config: MoFusionConfig | TransformerConfig
+    config: Config  # of a network for dancers (`performers.networks`)
     steps: int
     kinematic: KinematicWeights | None = None
     loss_weights: DanceLossWeights = DanceLossWeights()

@@ -85,10 +85,12 @@ def train_dancer(
     if ear and (wanted := getattr(recipe.config, "ear", None)) != ear.ear.config:
         needs = f"needs an ear with {wanted}" if wanted else "has no ear"
         raise ValueError(f"{recipe.name} {needs}; the ear that is given has {ear.ear.config}")
-    config, windows = recipe.config, training_windows(recipe) if windows is None else windows
+    made_of = "mixed" if recipe.motions else "music.varied and data_synth.dancing"
+    source = f"data_synth.{made_of}, synthetic" if windows is None else "given windows"
+    windows = training_windows(recipe) if windows is None else windows
     schedule = schedule_of(recipe)
     torch.manual_seed(recipe.seed)
-    model = network(config)
+    model = network(recipe.config)
     about = {"network": type(model).__name__, "data": digest(windows)}
     facts = {"windows": len(windows)} | bones_of(windows)
     if getattr(recipe.config, "ear", None):
@@ -98,13 +100,12 @@ def train_dancer(
         model.ear.load_state_dict(trained_ear.hearing(windows.mel_scaler).state_dict())
         about["ear"] = digest_of_tensors(trained_ear.ear.state_dict())[:16]
         facts["ear"] = trained_ear.card
-    made_of = "mixed" if recipe.motions else "music.varied and data_synth.dancing"
     trained, card = train_recipe(
         recipe,
         run_file,
         on_device(model, device),
         loss_of(recipe, windows, schedule),
-        Provenance(about, facts, f"data_synth.{made_of}, synthetic"),
+        Provenance(about, facts, source),
         warmup=300,
         log=log,
     )

@@ -4,7 +4,6 @@ A killed run continues where it was saved last.
 """
 
 import hashlib
-import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,7 +25,6 @@ from ..modiff import training_loss
 from ..motion.augment import mirror, reverse_time
 from ..motion.clip import Clip
 from ..motion.files import read_motions
-from ..motion.motion import MotionError, MotionWarning
 from ..motion.root_frame import FPS
 from ..performers.networks import network
 from ..performers.walker import Walker
@@ -49,19 +47,12 @@ def training_clips(recipe: Recipe) -> list[Clip]:
     return both + [reverse_time(clip) for clip, take in zip(both, chosen, strict=True) if take]
 
 
-def clips_of(folder: Path) -> list[Clip]:
+def clips_of(folder: str | Path) -> list[Clip]:
     """One's own motions for a walker: the files of a folder, at 20 frames/s, and mirrored.
 
-    A MotionWarning names each file that is left out. Raises MotionError if none can be used.
+    Warns and raises as `read_motions`.
     """
-    clips = []
-    for motion in read_motions(folder):
-        try:
-            clips.append(motion.resampled(FPS).rooted().to_clip())
-        except MotionError as error:
-            warnings.warn(f"left out: {error}", MotionWarning, stacklevel=2)
-    if not clips:
-        raise MotionError(f"no motion in {folder} can be used: each lacks joints")
+    clips = [motion.resampled(FPS).to_clip() for motion in read_motions(folder)]
     return [version for clip in clips for version in (clip, mirror(clip))]
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from ..beyond.footholds import FootholdConfig
 from ..diffusion_dropout import P_D, START
 from ..modiff import MODIFF_PAPER, MODIFF_SMALL, MoDiffConfig
+from ..performers.networks import Config
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ class Recipe:
     """
 
     name: str
-    config: MoDiffConfig
+    config: Config  # of a network for walkers (`performers.networks`)
     steps: int
     schedule: str = "linear"  # or "leap": `beyond.schedules`
     lr: float = 2e-3

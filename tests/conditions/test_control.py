@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from motiondiff_edu.conditions.control import constant_control, hold, joystick, splice
+from motiondiff_edu.conditions.control import as_long, constant_control, hold, joystick, splice
 
 
 def test_constant_and_hold():
@@ -26,6 +26,16 @@ def test_a_spliced_control_leads_into_the_first_new_frame():
     assert np.array_equal(past, before)
     with pytest.raises(ValueError, match="13 past frames; this past has 12"):
         splice(past, new, T_h=13)
+
+
+def test_a_control_has_the_columns_of_its_network():
+    rows = np.arange(8.0).reshape(2, 4)
+    longer = as_long(rows, 5, columns=4)
+    assert longer.shape == (5, 4) and np.array_equal(longer[[0, 4]], rows)
+    with pytest.raises(ValueError, match=r"is \(rows, 3\): .*, turning rad/s, 20 rows .* \(2, 4\)"):
+        as_long(rows, None)
+    with pytest.raises(ValueError, match=r"is \(rows, 4\): .*, 1 of your own, 20 rows .* \(2, 3\)"):
+        as_long(rows[:, :3], None, columns=4)
 
 
 def test_joystick_reaches_each_target_smoothly():

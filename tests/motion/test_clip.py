@@ -1,9 +1,12 @@
 """Clips, their windows, and a split that does not leak."""
 
+from dataclasses import replace
+
 import jaxtyping
 import numpy as np
 import pytest
 
+from motiondiff_edu.motion.augment import mirror, reverse_time
 from motiondiff_edu.motion.clip import Clip, slice_clips, split_by_source
 
 
@@ -92,6 +95,15 @@ def test_features_are_the_poses_flat():
     features = clip.features()
     assert features.shape == (6, 63) and features.dtype == np.float32
     assert features[4, 3 * 5 + 2] == np.float32(clip.poses[4, 5, 2])
+
+
+def test_columns_of_ones_own_move_nobody():
+    clip = clip_of(9)
+    more = replace(clip, control=np.hstack([clip.control, np.full((9, 2), 7.0)]))
+    assert np.array_equal(more.world((1.0, 2.0, 0.3)), clip.world((1.0, 2.0, 0.3)))
+    for change in (mirror, reverse_time):
+        with pytest.raises(ValueError, match="'a' has 5 columns of control.*then add your own"):
+            change(more)
 
 
 def test_poses_and_control_must_be_as_long(monkeypatch):

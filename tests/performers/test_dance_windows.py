@@ -44,6 +44,8 @@ def test_motions_are_taken_with_their_own_contacts_or_those_that_are_found():
     bare = DanceWindows.of_motions([Motion(x) for x in dances], mels, 40)
     found = [find_contacts(x[:, list(TOES)], 20.0) for x in dances]
     assert torch.equal(bare.contacts, torch.from_numpy(np.concatenate(found)))
+    silent = DanceWindows.of_motions(ours, n=40)
+    assert silent.mel.shape[1] == 0 and torch.equal(silent.dances, bare.dances)
     with pytest.raises(MotionError, match=r"30 frames/s: pass motion.resampled\(20\)"):
         DanceWindows.of_motions([Motion(dances[0], fps=30)], mels[:1], 40)
 

@@ -4,14 +4,21 @@
 """
 
 import inspect
+from dataclasses import replace
 
+import numpy as np
 import pytest
 import torch
 from devices import devices_of
 
+from data_synth.walking import walk
+from motiondiff_edu import rollout
+from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.ddpm import ddim_steps, linear_schedule, sample_steps
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
+from motiondiff_edu.motion.motion import Motion, MotionWarning
 from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.performers.joined import leg_size
 from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.prediction import to_eps
 from motiondiff_edu.rollout import generate
@@ -136,6 +143,26 @@ def test_a_walker_moved_is_a_copy_that_walks_alike():
     moved = walker.to("cpu")
     assert moved.model is not walker.model and moved.card == walker.card
     torch.testing.assert_close(generate(moved, past, control), generate(walker, past, control))
+
+
+def test_columns_of_ones_own_reach_the_network_as_they_are(monkeypatch):
+    """Speeds belong to the size of a figure, other columns do not; the first row is the past's."""
+    config = MoDiffConfig(C=5, T_h=T_H, T_p=T_P, S=S, width=16, heads=2, hidden=24)
+    past = walk(constant_control(1.0, seconds=1.0), seed=5)
+    large = replace(Motion.of_clip(past), source="large")
+    large = replace(large, positions=1.2 * large.positions, root=large.root * [1.2, 1.2, 1])
+    control = np.column_stack([np.tile([1.2, 0.0, 0.0], (3, 1)), [[7, 1], [8, 2], [9, 3]]])
+    units = Scaler.fit(torch.from_numpy(past.features())), Scaler.nothing(5)
+    walker = Walker(MoDiff(config).eval(), linear_schedule(S, 0.2, 0.95), *units)
+    seen = []
+    monkeypatch.setattr(rollout, "check_range", lambda steer, *_: seen.append(steer[0]))
+    with pytest.warns(MotionWarning, match="would jump"):  # an untrained network
+        walker.walk(large, control, progress=False)
+    assert seen[0].shape == (T_H + 3, 5)
+    torch.testing.assert_close(
+        seen[0][:, 3:].T, torch.tensor([[7.0] * 5 + [8, 9], [1.0] * 5 + [2, 3]])
+    )
+    assert (seen[0][-3:, 0] - 1.2 / leg_size(large.positions)).abs().max() < 1e-6
 
 
 def test_a_network_with_dropout_samples_without_it_and_stays_in_training():

@@ -46,6 +46,7 @@ def test_every_file_that_can_be_read_is_trained_on_and_mirrored(folder):
         clips = clips_of(folder)
     left_out = [str(one.message) for one in told if "left out" in str(one.message)]
     assert len(left_out) == 2 and "broken.bvh" in left_out[0] and "no position" in left_out[1]
+    assert "torn.npz" in left_out[1], "its file, and not only what the motion is called"
     assert len(clips) == 4 and all(len(clip) == 60 and clip.fps == 20 for clip in clips)
     first, mirrored = clips[:2]
     np.testing.assert_allclose(mirrored.control, first.control * [1, -1, -1], atol=1e-9)
@@ -62,7 +63,7 @@ def test_a_walker_is_trained_on_a_folder_and_its_card_says_so(folder, tmp_path, 
 
 
 def test_a_folder_without_motions_is_refused(tmp_path):
-    with pytest.raises(MotionError, match="no file in .* could be read"):
+    with pytest.raises(MotionError, match="no file in .* could be used"):
         clips_of(tmp_path)
     with pytest.raises(MotionError, match="is no folder"):
         clips_of(tmp_path / "nothing")
