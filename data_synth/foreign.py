@@ -12,8 +12,8 @@ import scipy
 from jaxtyping import Float
 
 from motiondiff_edu._files import replacing
-from motiondiff_edu.motion.bvh.fit import Fit, fit
-from motiondiff_edu.motion.bvh.write import text
+from motiondiff_edu.motion.formats.bvh.fit import Fit, fit
+from motiondiff_edu.motion.formats.bvh.write import text
 
 FPS = 60.0  # frames/s of the file
 # times the course's bones: whoever this is has long shanks, short feet and a short back

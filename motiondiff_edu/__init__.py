@@ -18,7 +18,7 @@ __version__ = "0.1.0"
 if TYPE_CHECKING:
     from .conditions.control import joystick
     from .editing.masks import keyframes_of as keyframes
-    from .motion.files import read_motion, read_motions
+    from .motion.formats.files import read_motion, read_motions
     from .motion.motion import Motion
     from .pretrained.checkpoints import load
     from .pretrained.shipped import edit, inbetween, reconstruct
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 # `import motiondiff_edu` is not slower than `import torch`.
 _FRONT_DOOR = {
     "Motion": (".motion.motion", "Motion"),
-    "read_motion": (".motion.files", "read_motion"),
-    "read_motions": (".motion.files", "read_motions"),
+    "read_motion": (".motion.formats.files", "read_motion"),
+    "read_motions": (".motion.formats.files", "read_motions"),
     "load": (".pretrained.checkpoints", "load"),
     "joystick": (".conditions.control", "joystick"),
     "keyframes": (".editing.masks", "keyframes_of"),

@@ -14,8 +14,8 @@ from data_synth.music import compose
 from data_synth.walking import walk
 from motiondiff_edu.__main__ import VERBS, main
 from motiondiff_edu.conditions.control import constant_control
-from motiondiff_edu.motion.bvh import read_bvh
-from motiondiff_edu.motion.bvh.write import write_bvh
+from motiondiff_edu.motion.formats.bvh import read_bvh
+from motiondiff_edu.motion.formats.bvh.write import write_bvh
 from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.motion.retarget import load_clip
 from motiondiff_edu.pretrained.checkpoints import available

@@ -20,8 +20,8 @@ from motiondiff_edu import bound, ddpm, exact, prediction
 from motiondiff_edu.conditions.control import joystick
 from motiondiff_edu.metrics.walks import adherence
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
-from motiondiff_edu.motion.bvh.write import write_bvh
 from motiondiff_edu.motion.clip import slice_clips, split_by_source
+from motiondiff_edu.motion.formats.bvh.write import write_bvh
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.rollout import generate
@@ -152,7 +152,7 @@ SHAPES = {  # in a process of its own: here the tests' own check of shapes would
 def test_shapes_that_would_broadcast_are_told_apart(call, tmp_path, root):
     code = f"""
 import numpy as np
-from motiondiff_edu.motion.bvh.write import write_bvh
+from motiondiff_edu.motion.formats.bvh.write import write_bvh
 from motiondiff_edu.motion.root_frame import to_world
 {call}
 """

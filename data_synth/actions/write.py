@@ -52,7 +52,7 @@ def main(arguments: list[str] | None = None) -> None:
     given = parser.parse_args(arguments)
     if given.clips < 1 or given.seed < 0:
         parser.error("write at least one clip (--clips), with a seed of 0 or more (--seed)")
-    from motiondiff_edu.motion.bvh.write import write_bvh
+    from motiondiff_edu.motion.formats.bvh.write import write_bvh
 
     for k, clip in enumerate(clips(given.clips, given.seed, given.split)):
         save_npz(clip, given.out / f"action_{k:03d}.npz")

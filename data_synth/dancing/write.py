@@ -59,7 +59,7 @@ def main(arguments: list[str] | None = None) -> None:
         parser.error(
             "write at least one dance (--dances, --each) of at least three seconds (--seconds)"
         )
-    from motiondiff_edu.motion.bvh.write import write_bvh
+    from motiondiff_edu.motion.formats.bvh.write import write_bvh
 
     songs = -(-given.dances // given.each)
     made = dances(songs, given.seed, given.seconds, each=given.each, genre=given.genre)

@@ -48,7 +48,7 @@ def main(arguments: list[str] | None = None) -> None:
     given = parser.parse_args(arguments)
     if given.clips < 1 or given.seconds < 0.5:
         parser.error("write at least one clip (--clips) of at least half a second (--seconds)")
-    from motiondiff_edu.motion.bvh.write import write_bvh
+    from motiondiff_edu.motion.formats.bvh.write import write_bvh
 
     styles = None if given.style is None else [given.style]
     clips = dataset(given.clips, given.seconds, given.seed, styles)

@@ -63,8 +63,8 @@ def joints_of(path: Path) -> list[str]:
 
 def bones_of(path: Path) -> list[str]:
     """Of a BVH file."""
-    from motiondiff_edu.motion.bvh import read_bvh
-    from motiondiff_edu.motion.dialects import guess_mapping
+    from motiondiff_edu.motion.formats.bvh import read_bvh
+    from motiondiff_edu.motion.formats.dialects import guess_mapping
 
     bvh = read_bvh(path)
     found = guess_mapping(bvh)
@@ -78,8 +78,8 @@ def bones_of(path: Path) -> list[str]:
 
 def names_of(path: Path) -> list[str]:
     """Of a file whose joints are known by their names alone; nothing for one of our own."""
-    from motiondiff_edu.motion.files import named_joints
-    from motiondiff_edu.motion.keypoints import sources_of
+    from motiondiff_edu.motion.formats.files import named_joints
+    from motiondiff_edu.motion.formats.keypoints import sources_of
     from motiondiff_edu.motion.skeleton import JOINTS
 
     there = named_joints(path)

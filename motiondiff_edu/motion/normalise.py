@@ -10,9 +10,9 @@ from collections.abc import Mapping
 import numpy as np
 from jaxtyping import Float
 
-from .bvh import Bvh
-from .bvh.tokens import BvhError
 from .directions import has_our_bones
+from .formats.bvh import Bvh
+from .formats.bvh.tokens import BvhError
 from .motion import MotionWarning
 from .skeleton import HEELS, JOINTS, TOES, joint_index
 

@@ -12,10 +12,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Bool, Float
 
-from .bvh import Bvh, BvhError, read_bvh
-from .bvh.frames import REPLACE_FPS
 from .clip import Clip
-from .dialects import TIPS, check_mapping, guess_mapping
 from .directions import (
     UPLEGS,
     bone_directions,
@@ -26,6 +23,9 @@ from .directions import (
     rest_lean,
 )
 from .faults import WILD, wild_joints
+from .formats.bvh import Bvh, BvhError, read_bvh
+from .formats.bvh.frames import REPLACE_FPS
+from .formats.dialects import TIPS, check_mapping, guess_mapping
 from .normalise import (
     FLIP_X,
     calibration_frames,

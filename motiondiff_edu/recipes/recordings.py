@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Bool, Float
 
-from ..motion.files import read_motion
+from ..motion.formats.files import read_motion
 from ..motion.planting import find_contacts
 from ..motion.root_frame import FPS
 from ..motion.skeleton import TOES

@@ -24,7 +24,7 @@ from ..diffusion_dropout import Dropout, dropout_rate
 from ..modiff import training_loss
 from ..motion.augment import mirror, reverse_time
 from ..motion.clip import Clip
-from ..motion.files import read_motions
+from ..motion.formats.files import read_motions
 from ..motion.root_frame import FPS
 from ..performers.networks import network
 from ..performers.walker import Walker

@@ -20,8 +20,8 @@ from numpy.typing import ArrayLike
 
 from ..editing.edit import Edit, Made, Make, drag_in_words, make_between
 from ..motion import recordings
-from ..motion.bvh.fit import FitReport
-from ..motion.bvh.write import write_bvh
+from ..motion.formats.bvh.fit import FitReport
+from ..motion.formats.bvh.write import write_bvh
 from ..motion.motion import check_no_recording
 from ..motion.skeleton import JOINTS, J, joint_index
 from . import editor_page, packing

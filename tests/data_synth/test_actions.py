@@ -35,7 +35,7 @@ from data_synth.actions.sentences import (
     pairs,
 )
 from data_synth.actions.write import main as write
-from motiondiff_edu.motion.bvh import read_bvh
+from motiondiff_edu.motion.formats.bvh import read_bvh
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, MIRROR, joint_index
 
 TOLD_APART = ("hand", "arm", "leg", "foot", "greet", "swing", "giv")  # wordings of waves and kicks

@@ -18,7 +18,7 @@ from data_synth.dancing.sheet import Counts, Sheet
 from data_synth.music.score import beat_song
 from data_synth.music.song import GENRES, SAMPLE_RATE
 from data_synth.walking.own_measures import knee_angles
-from motiondiff_edu.motion.bvh import read_bvh
+from motiondiff_edu.motion.formats.bvh import read_bvh
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, HEELS, MIRROR, TOES
 from motiondiff_edu.recipes.dancers import DANCER
 

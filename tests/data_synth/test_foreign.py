@@ -6,7 +6,7 @@ import pytest
 import motiondiff_edu as md
 from data_synth.foreign import BODY, FPS, NAMES, write_foreign
 from data_synth.mixed import motions
-from motiondiff_edu.motion.bvh import read_bvh
+from motiondiff_edu.motion.formats.bvh import read_bvh
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS
 
 

@@ -14,7 +14,7 @@ from data_synth.walking.styles import STYLES, draw_style, person
 from data_synth.walking.write import main
 from motiondiff_edu.metrics.distributions import spread
 from motiondiff_edu.motion.augment import mirror
-from motiondiff_edu.motion.bvh import read_bvh
+from motiondiff_edu.motion.formats.bvh import read_bvh
 from motiondiff_edu.motion.root_frame import root_path, to_root_frame
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, TOES
 

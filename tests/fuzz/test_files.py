@@ -25,9 +25,9 @@ from safetensors.torch import load_file, save_file
 from motiondiff_edu.conditions.audio_files import AudioError, read_audio
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
-from motiondiff_edu.motion.aist import AistError, read_keypoints
-from motiondiff_edu.motion.bvh import BvhError, read_bvh
-from motiondiff_edu.motion.files import read_motion
+from motiondiff_edu.motion.formats.aist import AistError, read_keypoints
+from motiondiff_edu.motion.formats.bvh import BvhError, read_bvh
+from motiondiff_edu.motion.formats.files import read_motion
 from motiondiff_edu.motion.motion import Motion, MotionError
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.walker import Walker

@@ -10,9 +10,9 @@ import numpy as np
 from bvh_text import dump
 from synthetic_walk import walk
 
-from motiondiff_edu.motion.bvh import Bvh
-from motiondiff_edu.motion.bvh.fit import fit
 from motiondiff_edu.motion.clip import Clip
+from motiondiff_edu.motion.formats.bvh import Bvh
+from motiondiff_edu.motion.formats.bvh.fit import fit
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, PARENTS, TOES
 
 CHANNELS = ("Zrotation", "Xrotation", "Yrotation")

@@ -60,7 +60,7 @@ def test_a_figure_at_constant_speed_has_no_beat_and_so_has_one_that_stands():
 
 
 def test_a_recorded_dance_has_the_same_beats_at_twenty_and_sixty_frames(real_data):
-    from motiondiff_edu.motion.aist import read_keypoints
+    from motiondiff_edu.motion.formats.aist import read_keypoints
 
     clip = read_keypoints(
         real_data / "aist" / "keypoints3d" / "gBR_sBM_cAll_d06_mBR2_ch06.pkl"

@@ -11,7 +11,7 @@ from motiondiff_edu.metrics.distributions import (
     kinetic_features,
     published_kinetic_features,
 )
-from motiondiff_edu.motion.aist import read_keypoints
+from motiondiff_edu.motion.formats.aist import read_keypoints
 
 TIMES = np.arange(91) / 60
 

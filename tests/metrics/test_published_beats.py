@@ -14,7 +14,7 @@ from motiondiff_edu.metrics.dances import (
     bailando_score,
     kinematic_beats,
 )
-from motiondiff_edu.motion.aist import read_keypoints
+from motiondiff_edu.motion.formats.aist import read_keypoints
 
 GRID = np.arange(0, 576, 36)  # 100 BPM at 60 frames/s: 16 beats in 9.6 s
 

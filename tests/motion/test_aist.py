@@ -12,7 +12,7 @@ import pytest
 from numpy._core.multiarray import _reconstruct
 from numpy._core.numeric import _frombuffer as frombuffer
 
-from motiondiff_edu.motion.aist import AistError, read_keypoints, tempo_of
+from motiondiff_edu.motion.formats.aist import AistError, read_keypoints, tempo_of
 
 NAME = "gJS_sBM_cAll_d03_mJS4_ch06.pkl"
 

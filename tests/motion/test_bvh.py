@@ -8,8 +8,8 @@ import pytest
 from bvh_text import SMALL, random_bvh
 from scipy.spatial.transform import Rotation
 
-from motiondiff_edu.motion.bvh import Bvh, BvhError, read_bvh
-from motiondiff_edu.motion.bvh.frames import rate
+from motiondiff_edu.motion.formats.bvh import Bvh, BvhError, read_bvh
+from motiondiff_edu.motion.formats.bvh.frames import rate
 from motiondiff_edu.motion.kinematics import euler_to_matrix
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from bvh_text import SMALL
 
-from motiondiff_edu.motion.bvh import BvhError, read_bvh
+from motiondiff_edu.motion.formats.bvh import BvhError, read_bvh
 
 # name of the real file: (line, joint, words of the message)
 REAL = {

@@ -12,10 +12,10 @@ import pytest
 from browser import PATIENCE
 from synthetic_walk import walk
 
-from motiondiff_edu.motion.bvh import BvhError, read_bvh
-from motiondiff_edu.motion.bvh.fit import euler_zxy, fit, kabsch, least_turn
-from motiondiff_edu.motion.bvh.write import write_bvh
-from motiondiff_edu.motion.files import read_motion
+from motiondiff_edu.motion.formats.bvh import BvhError, read_bvh
+from motiondiff_edu.motion.formats.bvh.fit import euler_zxy, fit, kabsch, least_turn
+from motiondiff_edu.motion.formats.bvh.write import write_bvh
+from motiondiff_edu.motion.formats.files import read_motion
 from motiondiff_edu.motion.kinematics import euler_to_matrix, rot_x, rot_z
 from motiondiff_edu.motion.retarget import load_clip
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, JOINTS

@@ -6,8 +6,13 @@ import numpy as np
 import pytest
 from foreign_walk import foreign, without
 
-from motiondiff_edu.motion.bvh import BvhError, read_bvh
-from motiondiff_edu.motion.dialects import check_mapping, guess_mapping, shared, without_shared
+from motiondiff_edu.motion.formats.bvh import BvhError, read_bvh
+from motiondiff_edu.motion.formats.dialects import (
+    check_mapping,
+    guess_mapping,
+    shared,
+    without_shared,
+)
 from motiondiff_edu.motion.retarget import load_clip, retarget
 from motiondiff_edu.motion.skeleton import JOINTS
 

@@ -13,8 +13,8 @@ from synthetic_walk import walk
 
 import motiondiff_edu as md
 from motiondiff_edu.__main__ import main
-from motiondiff_edu.motion import humanml3d, humanml3d_folder
-from motiondiff_edu.motion.humanml3d import HUMANML, Statistics
+from motiondiff_edu.motion.formats import humanml3d, humanml3d_folder
+from motiondiff_edu.motion.formats.humanml3d import HUMANML, Statistics
 from motiondiff_edu.motion.motion import MotionError, MotionWarning
 from motiondiff_edu.motion.retarget import load_clip, onto_our_bones
 from motiondiff_edu.motion.root_frame import body_heading

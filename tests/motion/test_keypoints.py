@@ -6,9 +6,9 @@ import pytest
 import motiondiff_edu as md
 from data_synth.dancing import dances
 from data_synth.walking import walk
-from motiondiff_edu.motion.aist import COCO, read_keypoints
-from motiondiff_edu.motion.bvh.tokens import BvhError
-from motiondiff_edu.motion.keypoints import motion_of_keypoints, sources_of
+from motiondiff_edu.motion.formats.aist import COCO, read_keypoints
+from motiondiff_edu.motion.formats.bvh.tokens import BvhError
+from motiondiff_edu.motion.formats.keypoints import motion_of_keypoints, sources_of
 from motiondiff_edu.motion.motion import Motion, MotionError
 from motiondiff_edu.motion.resample import resample_present
 from motiondiff_edu.motion.skeleton import JOINTS, joint_index

@@ -107,7 +107,7 @@ def test_a_child_before_its_parent_is_refused():
 )
 def test_published_positions_of_a_sinusoidal_file(real_data, frame, joint, where):
     """World positions printed in another project's tests (fairmotion)."""
-    from motiondiff_edu.motion.bvh import read_bvh
+    from motiondiff_edu.motion.formats.bvh import read_bvh
 
     positions = read_bvh(real_data / "bvh" / "fairmotion_sinusoidal.bvh").world_positions()
     np.testing.assert_allclose(positions[frame, joint], where, atol=1e-4)

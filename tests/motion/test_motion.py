@@ -12,10 +12,10 @@ from synthetic_walk import walk as figure
 from data_synth.dancing.write import main as write_dances
 from data_synth.walking import walk
 from data_synth.walking.write import main as write_walks
-from motiondiff_edu.motion.aist import AistError
-from motiondiff_edu.motion.bvh import BvhError, read_bvh
-from motiondiff_edu.motion.bvh.write import write_bvh
-from motiondiff_edu.motion.files import read_motion
+from motiondiff_edu.motion.formats.aist import AistError
+from motiondiff_edu.motion.formats.bvh import BvhError, read_bvh
+from motiondiff_edu.motion.formats.bvh.write import write_bvh
+from motiondiff_edu.motion.formats.files import read_motion
 from motiondiff_edu.motion.motion import Motion, MotionError, MotionWarning
 from motiondiff_edu.motion.registry import Registry
 from motiondiff_edu.motion.skeleton import JOINTS, Skeleton

@@ -10,8 +10,8 @@ import torch
 from motiondiff_edu.conditions.control import joystick, splice
 from motiondiff_edu.metrics.bodies import bone_rmse
 from motiondiff_edu.metrics.walks import adherence
-from motiondiff_edu.motion.bvh import read_bvh
-from motiondiff_edu.motion.bvh.write import write_bvh
+from motiondiff_edu.motion.formats.bvh import read_bvh
+from motiondiff_edu.motion.formats.bvh.write import write_bvh
 from motiondiff_edu.motion.retarget import load_clip
 from motiondiff_edu.motion.root_frame import to_world
 from motiondiff_edu.motion.skeleton import JOINTS

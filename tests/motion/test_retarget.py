@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from foreign_walk import foreign, seen_in_a_mirror, sound
 
-from motiondiff_edu.motion.bvh import BvhError, read_bvh
 from motiondiff_edu.motion.clip import Clip
-from motiondiff_edu.motion.dialects import check_mapping, guess_mapping, plain, spellings
+from motiondiff_edu.motion.formats.bvh import BvhError, read_bvh
+from motiondiff_edu.motion.formats.dialects import check_mapping, guess_mapping, plain, spellings
 from motiondiff_edu.motion.motion import MotionWarning
 from motiondiff_edu.motion.retarget import load_clip, retarget
 from motiondiff_edu.motion.root_frame import forward_left

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from foreign_walk import foreign, sound, without
 
-from motiondiff_edu.motion.bvh import read_bvh
-from motiondiff_edu.motion.dialects import guess_mapping
+from motiondiff_edu.motion.formats.bvh import read_bvh
+from motiondiff_edu.motion.formats.dialects import guess_mapping
 from motiondiff_edu.motion.resample import resample, resample_present
 from motiondiff_edu.motion.retarget import retarget
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, TOES

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from motiondiff_edu.metrics.bodies import bone_rmse, repeat_score
-from motiondiff_edu.motion.bvh import read_bvh
-from motiondiff_edu.motion.bvh.write import write_bvh
+from motiondiff_edu.motion.formats.bvh import read_bvh
+from motiondiff_edu.motion.formats.bvh.write import write_bvh
 from motiondiff_edu.pretrained.checkpoints import available, pretrained
 
 SECONDS = 12

@@ -10,7 +10,7 @@ from data_synth.walking import walk
 from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.editing.plausible import SINKS, longest_glide
-from motiondiff_edu.motion.bvh.write import write_bvh
+from motiondiff_edu.motion.formats.bvh.write import write_bvh
 from motiondiff_edu.motion.skeleton import HIPS
 from motiondiff_edu.recipes import __main__ as command
 from motiondiff_edu.recipes.inbetweener import INBETWEENER, training_windows, varied

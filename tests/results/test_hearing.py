@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from data_synth.music import compose
-from motiondiff_edu.performers.heard_by import Heard
+from motiondiff_edu.course.analyses.heard_by import Heard
 from tools.results.dances import hearing
 from tools.results.dances.hearing import hearing_measures, hearing_of
 

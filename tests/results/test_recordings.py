@@ -14,7 +14,7 @@ from motiondiff_edu.baselines.interpolation import linear
 from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.metrics.keyframes import unknown_error
-from motiondiff_edu.motion.bvh.write import write_bvh
+from motiondiff_edu.motion.formats.bvh.write import write_bvh
 from motiondiff_edu.recipes.inbetweener import INBETWEENER
 from tools.results import __main__ as results
 from tools.results.recordings import (

@@ -10,9 +10,9 @@ from browser import coloured, drawn, ink, open_page
 from editor_page import guess, open_editor, settled
 from synthetic_walk import walk
 
-from motiondiff_edu.motion.bvh import read_bvh
-from motiondiff_edu.motion.bvh.write import write_bvh
-from motiondiff_edu.motion.files import read_motion
+from motiondiff_edu.motion.formats.bvh import read_bvh
+from motiondiff_edu.motion.formats.bvh.write import write_bvh
+from motiondiff_edu.motion.formats.files import read_motion
 from motiondiff_edu.motion.motion import MotionError
 from motiondiff_edu.motion.skeleton import BONES, JOINTS, joint_index
 from motiondiff_edu.viz.body import Camera, project

@@ -14,7 +14,7 @@ from jaxtyping import Float
 from matplotlib.figure import Figure as Picture
 
 from motiondiff_edu.conditions.music import SAMPLE_RATE
-from motiondiff_edu.performers.attention_on_beats import (
+from motiondiff_edu.course.analyses.attention_on_beats import (
     attention_maps,
     beat_mass,
     beat_mass_by_chance,

@@ -13,9 +13,9 @@ from jaxtyping import Float
 from data_synth.music.song import Song
 from data_synth.music.tempi import HELD_OUT_TEMPI
 from motiondiff_edu.conditions.music import beats_of
+from motiondiff_edu.course.analyses.heard_by import Heard, heard_by
 from motiondiff_edu.metrics.dances import f_measure
 from motiondiff_edu.performers.dancer import Dancer
-from motiondiff_edu.performers.heard_by import Heard, heard_by
 
 from ..walks.parts import weights_digest
 from ..walks.scores import Measure, measure_of, ratio

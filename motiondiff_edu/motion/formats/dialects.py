@@ -13,9 +13,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from ..skeleton import JOINTS
 from .bvh import Bvh
 from .bvh.tokens import BvhError
-from .skeleton import JOINTS
 
 # The joints of one side, best spelling first. The side is a word or a letter, before or after the
 # name (LeftKnee, Knee_L). One word can mean two joints: LeftHip is a thigh or a corner of the

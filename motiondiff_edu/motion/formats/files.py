@@ -13,23 +13,18 @@ from typing import Any
 
 import numpy as np
 
-from .._files import replacing
-from . import recordings, registry
+from ..._files import replacing
+from .. import recordings, registry
+from ..check import lies_down, unit_of, unlike_a_body
+from ..checks import check_there
+from ..clip import Clip
+from ..motion import Motion, MotionError, MotionWarning, checked_path
+from ..retarget import load_clip
+from ..root_frame import FPS
+from ..skeleton import COURSE, JOINTS, Skeleton
 from .aist import COCO, read_keypoints
 from .bvh.write import write_bvh
-from .check import lies_down, unit_of, unlike_a_body
-from .checks import check_there
-from .clip import Clip
 from .keypoints import motion_of_keypoints
-from .motion import (
-    Motion,
-    MotionError,
-    MotionWarning,
-    checked_path,
-)
-from .retarget import load_clip
-from .root_frame import FPS
-from .skeleton import COURSE, JOINTS, Skeleton
 
 FORMAT = "motiondiff_edu motion 1"
 LONGEST_SOURCE = 200  # letters
@@ -53,9 +48,9 @@ def read_motion(
     """Read a motion from a file; the name's ending says whether it is BVH, npz, npy or pkl.
 
     Any humanoid BVH is retargeted to the course's skeleton and resampled to 20 frames/s; so is an
-    npz with the `names` of its joints that this package did not write (`motion/keypoints.py`), and
+    npz with the `names` of its joints that this package did not write (`formats/keypoints.py`), and
     a pkl, which has keypoints of AIST++ and is read without running its code. An npy is a motion of
-    HumanML3D (`motion/humanml3d.py`).
+    HumanML3D (`formats/humanml3d.py`).
 
     mapping   for a BVH file: {joint of the course: joint of the file}, for names not recognised
     file_fps  for a BVH file: its frames a second, if the file states a wrong number

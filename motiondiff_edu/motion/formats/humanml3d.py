@@ -22,12 +22,12 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float
 
-from . import registry
-from .check import unlike_a_body
-from .checks import check_there
-from .motion import Motion, MotionError, MotionWarning
-from .root_frame import FPS, forward_left
-from .skeleton import BONE_LENGTHS, J, Skeleton, joint_index
+from .. import registry
+from ..check import unlike_a_body
+from ..checks import check_there
+from ..motion import Motion, MotionError, MotionWarning
+from ..root_frame import FPS, forward_left
+from ..skeleton import BONE_LENGTHS, J, Skeleton, joint_index
 
 NUMBERS = 263
 # name and parent of each joint, in the order of SMPL

@@ -10,9 +10,9 @@ import numpy as np
 import scipy
 from jaxtyping import Float, Int
 
-from ..directions import least_turn
-from ..kinematics import forward_kinematics
-from ..skeleton import BONES, HIPS, JOINTS, OFFSETS, PARENTS, joint_index
+from ...directions import least_turn
+from ...kinematics import forward_kinematics
+from ...skeleton import BONES, HIPS, JOINTS, OFFSETS, PARENTS, joint_index
 
 # Three joints of length zero, as in capture files: with them, spine and collars turn independently
 # of hips and neck.

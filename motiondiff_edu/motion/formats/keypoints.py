@@ -10,10 +10,10 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float
 
+from ..motion import Motion, MotionError
+from ..retarget import Figure, retarget_figure
+from ..skeleton import JOINTS, joint_index
 from .dialects import LIMBS, NEEDED, by_names, by_plain, unlike
-from .motion import Motion, MotionError
-from .retarget import Figure, retarget_figure
-from .skeleton import JOINTS, joint_index
 
 # Joints that are the middle of others: the first of these groups that is there.
 MIDDLES = {

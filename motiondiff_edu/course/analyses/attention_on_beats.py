@@ -12,11 +12,11 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from ..cross_modal_attention import watch
-from ..ddpm import draw, q_sample
-from ..mofusion import MoFusionConfig
-from ..motion.dance_frame import to_features
-from .dancer import Dancer
+from ...cross_modal_attention import watch
+from ...ddpm import draw, q_sample
+from ...mofusion import MoFusionConfig
+from ...motion.dance_frame import to_features
+from ...performers.dancer import Dancer
 
 NEAR = 0.1  # s: tokens closer than this to a beat count as on the beat
 

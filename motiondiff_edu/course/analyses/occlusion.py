@@ -10,9 +10,9 @@ import numpy as np
 import torch
 from jaxtyping import Float
 
-from ..conditions.music import SAMPLE_RATE, log_mel
-from ..conditions.silence import WIDTH, silence_hit
-from .dancer import Dancer
+from ...conditions.music import SAMPLE_RATE, log_mel
+from ...conditions.silence import WIDTH, silence_hit
+from ...performers.dancer import Dancer
 
 
 @dataclass(frozen=True, eq=False)

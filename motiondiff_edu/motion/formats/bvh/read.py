@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from ..kinematics import euler_to_matrix, forward_kinematics
+from ...kinematics import euler_to_matrix, forward_kinematics
 from .frames import frame_rows, frame_time, header, rate
 from .hierarchy import Node, read_nodes
 from .tokens import BvhError, read_lines, statements

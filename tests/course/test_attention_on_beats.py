@@ -13,9 +13,9 @@ from small_dancers import TINY
 from small_dancers import dancer_to_mel as dancer
 
 from motiondiff_edu.conditions.music import log_mel
+from motiondiff_edu.course.analyses import attention_on_beats
 from motiondiff_edu.cross_modal_attention import CrossModalAttention
 from motiondiff_edu.mofusion import Level, MoFusion
-from motiondiff_edu.performers import attention_on_beats
 from motiondiff_edu.pretrained import checkpoints
 
 

@@ -7,11 +7,11 @@ import pytest
 import torch
 from small_dancers import dancer_to_mel
 
+from motiondiff_edu.course.analyses.heard_by import as_heard, crossings, heard_by, place_of
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.performers.ear import GENRES, EarOutput
-from motiondiff_edu.performers.heard_by import as_heard, crossings, heard_by, place_of
 from motiondiff_edu.performers.hearing_mofusion import HearingConfig, HearingMoFusion
 
 TIMES = np.arange(300) * 0.064

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float
 
-from ..._files import replacing
-from ..skeleton import J
+from ...._files import replacing
+from ...skeleton import J
 from .fit import END_SITES, Fit, FitReport, fit
 from .frames import FASTEST, SLOWEST
 from .tokens import BvhError

@@ -13,10 +13,10 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from ..cross_modal_attention import watch
-from ..ddpm import Denoiser, draw, q_sample
-from .mover import Mover
-from .text_mofusion import Texts
+from ...cross_modal_attention import watch
+from ...ddpm import Denoiser, draw, q_sample
+from ...performers.mover import Mover
+from ...performers.text_mofusion import Texts
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ from bursts import clicks
 from small_dancers import dancer_to_mel as dancer
 
 from motiondiff_edu.conditions.music import log_mel
-from motiondiff_edu.performers.occlusion import occlusion
+from motiondiff_edu.course.analyses.occlusion import occlusion
 
 
 def test_occlusion_dances_again_from_the_same_noise():

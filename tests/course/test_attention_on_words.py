@@ -10,12 +10,12 @@ import torch
 from data_synth.actions import clips
 from motiondiff_edu.beyond import timeline
 from motiondiff_edu.conditions.text import TextError
-from motiondiff_edu.motion.moving_frame import to_features
-from motiondiff_edu.performers.attention_on_words import (
+from motiondiff_edu.course.analyses.attention_on_words import (
     WordMaps,
     attention_of_the_plan,
     attention_on_words,
 )
+from motiondiff_edu.motion.moving_frame import to_features
 from motiondiff_edu.performers.mover import Mover
 
 SMALL, PLANNED = (replace(one, depth=2) for one in (small_movers.SMALL, small_movers.PLANNED))

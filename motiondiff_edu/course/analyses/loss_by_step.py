@@ -13,9 +13,9 @@ import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
-from ..ddpm import Denoiser, Schedule, draw, q_sample
-from ..kinematic_loss import Body, kinematic_parts, over_time
-from ..prediction import target_of, to_x0, x0_from_eps
+from ...ddpm import Denoiser, Schedule, draw, q_sample
+from ...kinematic_loss import Body, kinematic_parts, over_time
+from ...prediction import target_of, to_x0, x0_from_eps
 
 Predictor = Callable[[Tensor, Tensor, Tensor], Tensor]  # (x_s, s, eps) -> eps_hat
 

@@ -11,16 +11,16 @@ import pytest
 import torch
 from synthetic_dance import windows
 
-from motiondiff_edu.ddpm import cosine_schedule, q_sample
-from motiondiff_edu.exact import dataset_denoiser
-from motiondiff_edu.motion.dance_frame import body_of
-from motiondiff_edu.motion.scaler import Scaler
-from motiondiff_edu.performers.loss_by_step import (
+from motiondiff_edu.course.analyses.loss_by_step import (
     clean_guess,
     losses_over_time,
     noisy_predictor,
     predictor_of,
 )
+from motiondiff_edu.ddpm import cosine_schedule, q_sample
+from motiondiff_edu.exact import dataset_denoiser
+from motiondiff_edu.motion.dance_frame import body_of
+from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.viz import training as viz
 from motiondiff_edu.viz.style import caption
 

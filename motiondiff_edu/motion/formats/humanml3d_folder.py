@@ -14,10 +14,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from .checks import check_there
+from ..checks import check_there
+from ..motion import Motion, MotionError, MotionWarning
+from ..root_frame import FPS
 from .humanml3d import joints_in, to_course
-from .motion import Motion, MotionError, MotionWarning
-from .root_frame import FPS
 
 MOTIONS = ("new_joint_vecs", "new_joints")
 LISTED = 3  # names of missing files in a warning

@@ -10,9 +10,9 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from ..conditions.music import frame_times
-from .dancer import Dancer
-from .ear import GENRES, EarOutput
+from ...conditions.music import frame_times
+from ...performers.dancer import Dancer
+from ...performers.ear import GENRES, EarOutput
 
 NEAREST = 0.2  # seconds between two beats, at least; 180 BPM have .33
 

@@ -1,0 +1,1 @@
+"""What a network does, looked at as single notebooks show it."""
