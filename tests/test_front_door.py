@@ -307,7 +307,7 @@ def test_the_first_of_several_samples_is_the_sample_alone(make, walked):
     ],
 )
 def test_numbers_are_checked_before_weights_are_loaded(make, told, walked, monkeypatch):
-    monkeypatch.setattr(shipped, "_shipped", lambda name: pytest.fail(f"{name} was loaded"))
+    monkeypatch.setattr(checkpoints, "pretrained", lambda name: pytest.fail(f"{name} was loaded"))
     with pytest.raises(ValueError, match=told):
         make(walked)
 

@@ -4,11 +4,12 @@ Safetensors with a card that says what they are and how they were made; float16 
 Notebook: 00, 07, 12
 """
 
+import copy
 import json
 from collections.abc import Callable
 from dataclasses import MISSING, asdict, dataclass
 from difflib import get_close_matches
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 
 import torch
@@ -246,4 +247,11 @@ def pretrained(name: str = "walker") -> AnyPerformer:
         near = get_close_matches(name.lower(), files, n=1)
         meant = f". Did you mean {near[0]!r}?" if near else ""
         raise CheckpointError(f"no weights are called {name!r}; there are: {there}{meant}")
-    return load(files[name])
+    path = files[name]
+    return copy.deepcopy(_kept(path, path.stat().st_mtime_ns))
+
+
+@cache
+def _kept(path: Path, changed: int) -> AnyPerformer:
+    """Shipped weights are read and checked once; nobody gets this object, only copies of it."""
+    return _read(path, *KINDS)

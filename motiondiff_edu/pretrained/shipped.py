@@ -5,7 +5,6 @@ Notebook: 15, 17
 
 import warnings
 from dataclasses import replace
-from functools import lru_cache
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -21,10 +20,9 @@ from ..motion.known import checked_known
 from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HIPS, TOES
-from ..performers.inbetweener import STEPS, Inbetweener
-from ..performers.mover import LONGEST, SHORTEST, Mover
+from ..performers.inbetweener import STEPS
+from ..performers.mover import LONGEST, SHORTEST
 from ..performers.performer import bar, generators
-from ..performers.walker import Walker
 from . import checkpoints
 
 
@@ -51,7 +49,7 @@ def inbetween(
     """
     known, count = _fitting(motion, known), checked_samples(samples)
     checked_seed(seed)
-    inbetweener = _shipped("inbetweener")
+    inbetweener = checkpoints.pretrained("inbetweener")
     steps = min(checked_count(steps, "steps"), inbetweener.schedule.S)
     if known.all():
         raise MotionError(f"{motion.name}: every joint is known, so there is nothing to generate")
@@ -97,7 +95,7 @@ def reconstruct(
     """
     known, count = _fitting(motion, known), checked_samples(samples)
     checked_seed(seed)
-    walker, draws = _shipped("walker"), generators(seed, count)
+    walker, draws = checkpoints.pretrained("walker"), generators(seed, count)
     watch = bar("reconstructing", reconstruction.ROUNDS, progress)
     made = [
         reconstruction.reconstruct(walker, motion.positions, known, generator=draw, watch=watch)
@@ -150,7 +148,7 @@ def edit(
     count = checked_samples(samples)
     checked_seed(seed)
     checked_strength(strength)
-    mover = _shipped("mover")
+    mover = checkpoints.pretrained("mover")
     for note in mover.reader.read(text).notes:
         warnings.warn(note, MotionWarning, stacklevel=2)
     made = by_words.edit_by_words(
@@ -174,11 +172,6 @@ def edit(
         )
     made = [_made(motion, nothing, positions, f"edited: {text.strip():.40}") for positions in made]
     return made if samples > 1 else made[0]
-
-
-@lru_cache(maxsize=4)
-def _shipped(name: str) -> Walker | Mover | Inbetweener:
-    return checkpoints.pretrained(name)
 
 
 def _fitting(motion: Motion, known) -> Bool[np.ndarray, "T J"]:

@@ -194,7 +194,17 @@ def test_shipped_weights_are_read_once(saved: Path, monkeypatch: pytest.MonkeyPa
     reads, opened = [], weights_file._opened
     monkeypatch.setattr(weights_file, "_opened", lambda path: reads.append(path) or opened(path))
     monkeypatch.setattr(checkpoints, "FOLDER", saved.parent)
-    assert isinstance(pretrained("tiny"), Walker) and reads == [saved]
+    first, again = pretrained("tiny"), pretrained("tiny")
+    assert isinstance(first, Walker) and reads == [saved]
+    with torch.no_grad():  # what one user changes is not another's
+        next(first.model.parameters()).add_(1.0)
+    first.card["name"] = "changed"
+    assert again.card == pretrained("tiny").card != first.card
+    for one, other in ((again, pretrained("tiny")), (first, pretrained("tiny"))):
+        same = torch.equal(next(one.model.parameters()), next(other.model.parameters()))
+        assert same == (one is again)
+    save(replace(first, card={"name": "retrained"}), saved)
+    assert pretrained("tiny").card["name"] == "retrained" and len(reads) == 2
 
 
 def test_with_no_weights_at_all_it_says_how_to_make_them(
