@@ -19,7 +19,7 @@ from motiondiff_edu.editing.plausible import CALMER, DRAWS
 from motiondiff_edu.motion.motion import MotionError, MotionWarning
 from motiondiff_edu.motion.skeleton import HIPS, TOES, Skeleton, joint_index
 from motiondiff_edu.performers.inbetweener import Inbetweener
-from motiondiff_edu.pretrained import shipped
+from motiondiff_edu.pretrained import checkpoints, shipped
 from motiondiff_edu.widgets import motions as shown
 from motiondiff_edu.widgets.player import Player
 

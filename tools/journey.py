@@ -165,7 +165,7 @@ def warmed() -> None:
     for module in pkgutil.walk_packages([str(PACKAGE)], f"{md.__name__}."):
         if not module.name.endswith("__main__"):
             importlib.import_module(module.name)
-    for name in ("walker", "dancer"):
+    for name in ("walker", "dancer", "inbetweener"):
         md.load(name)
 
 
