@@ -16,8 +16,7 @@ from timing import in_turn
 
 from data_synth.walking import dataset
 from motiondiff_edu.motion.clip import Clip
-from motiondiff_edu.recipes.train_walker import prepared
-from motiondiff_edu.recipes.walkers import WALKER_TRUNK, Recipe
+from motiondiff_edu.recipes.walker import WALKER_TRUNK, Recipe, prepared
 
 COMMAND = "python -m benchmarks encoding"
 

@@ -31,7 +31,7 @@ from data_synth.walking.styles import STYLES  # noqa: E402
 from motiondiff_edu.motion.augment import mirror  # noqa: E402
 from motiondiff_edu.motion.clip import Clip  # noqa: E402
 from motiondiff_edu.recipes.budget import BUDGET, train_for  # noqa: E402
-from motiondiff_edu.recipes.walkers import MEND_CONFIG  # noqa: E402
+from motiondiff_edu.recipes.walker import MEND_CONFIG  # noqa: E402
 from tools.results.walks.scores import score  # noqa: E402
 from tools.results.walks.trials import (  # noqa: E402
     FPS,

@@ -4,7 +4,7 @@ It yields after every step, keeps an averaged copy, and can be killed and resume
 
 Nothing here knows what is trained: `loss_fn(model, generator)` draws its own batch and noise from
 the generator. A network with dropout draws from torch's global generator as well. A run saves the
-states of both, which is why it continues bit for bit when it is resumed (`recipes.runs`).
+states of both, which is why it continues bit for bit when it is resumed (`recipes.training`).
 Source: MoDiff Alg. 1.   Notebook: 05, 07
 """
 
@@ -32,7 +32,7 @@ class NonFiniteLoss(RuntimeError):
 class TrainState:
     """Everything that a run consists of.
 
-    `recipes.runs.save_run` writes it and `recipes.runs.resume_run` reads it.
+    `recipes.training.save_run` writes it and `recipes.training.resume_run` reads it.
     """
 
     model: nn.Module
@@ -62,7 +62,7 @@ class TrainState:
 class Saving:
     """A function that writes a state, and the seconds of training between two such writes.
 
-    `recipes.runs.saver` makes one.
+    `recipes.training.saver` makes one.
     """
 
     write: Callable[[TrainState], object]

@@ -33,7 +33,7 @@ from motiondiff_edu.ddpm import (
 )
 from motiondiff_edu.exact import exact_denoiser, mixture, sample_mixture
 from motiondiff_edu.prediction import to_eps
-from motiondiff_edu.recipes.dancers import DANCER
+from motiondiff_edu.recipes.dancer import DANCER
 
 S_REF = 1000
 

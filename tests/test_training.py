@@ -18,7 +18,7 @@ from torch import nn
 
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.recipes.muon import MuonAndAdam
-from motiondiff_edu.recipes.runs import notes_of, resume_run, save_run, saver
+from motiondiff_edu.recipes.training import notes_of, resume_run, save_run, saver
 from motiondiff_edu.training import NonFiniteLoss, Saving, TrainState, cosine_lr, train_steps
 
 

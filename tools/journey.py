@@ -30,7 +30,7 @@ from data_synth.music import compose
 from data_synth.walking import walk as synthetic_walk
 from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.pretrained.checkpoints import save
-from motiondiff_edu.recipes import dancers, train_dancer, train_walker, walkers
+from motiondiff_edu.recipes import dancer, walker
 
 ROOT = Path(__file__).parent.parent
 PACKAGE = Path(md.__file__).parent
@@ -146,17 +146,17 @@ def jobs(folder: Path) -> dict[str, Callable[[], object]]:
     song = folder / "song.wav"
     soundfile.write(song, compose(3, "pop", seconds=4.0).audio, 16_000)
     short = {"steps": 3, "batch": 2, "seconds": 8.0}
-    walker = replace(walkers.RECIPES["walker"], clips=2, begins_with="", **short)
-    dancer = replace(dancers.DANCE_RECIPES["dancer"], songs=2, dances=1, frames=40, **short)
-    if ear := getattr(dancer, "ear", None):  # it is trained first
-        dancer = replace(dancer, ear=replace(ear, songs=2, frames=(40, 60), **short))
+    of_walker = replace(walker.RECIPES["walker"], clips=2, begins_with="", **short)
+    of_dancer = replace(dancer.DANCE_RECIPES["dancer"], songs=2, dances=1, frames=40, **short)
+    if ear := getattr(of_dancer, "ear", None):  # it is trained first
+        of_dancer = replace(of_dancer, ear=replace(ear, songs=2, frames=(40, 60), **short))
     files = folder / "walker.safetensors", folder / "dancer.safetensors"
     return {
         "walk": lambda: md.load("walker").walk(given, md.joystick([(1, 1.2, 0, 0)]), seed=0),
         "dance": lambda: md.load("dancer").dance(song, seconds=4, seed=0),
         "inbetween": lambda: md.inbetween(given, md.keyframes(given, every=20)),
-        "recipe": lambda: save(train_walker.train(walker, folder / "run", log=str), files[0]),
-        "dancer_recipe": lambda: train_dancer.train_dancer(dancer, files[1], log=str),
+        "recipe": lambda: save(walker.train(of_walker, folder / "run", log=str), files[0]),
+        "dancer_recipe": lambda: dancer.train_dancer(of_dancer, files[1], log=str),
     }
 
 

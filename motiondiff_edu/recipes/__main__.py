@@ -12,16 +12,13 @@ import torch
 from ..conditions import clip as clips
 from ..pretrained.checkpoints import AnyPerformer, load, save
 from ..pretrained.judges import save_judge
-from .dancers import DANCE_RECIPES, SHIPPED_DANCERS
+from .dancer import DANCE_RECIPES, SHIPPED_DANCERS, train_dancer
 from .ear import TrainedEar, ear_within
 from .inbetweener import INBETWEENER, train_inbetweener
 from .judges import JUDGES, train_judge
-from .movers import MOVER, MOVER_RECIPES
+from .mover import MOVER, MOVER_RECIPES, train_mover
 from .recordings import RecordingsError, recording_files
-from .train_dancer import train_dancer
-from .train_mover import train_mover
-from .train_walker import clips_of, train
-from .walkers import PAIRS, RECIPES, SHIPPED
+from .walker import PAIRS, RECIPES, SHIPPED, clips_of, train
 
 ALL = RECIPES | DANCE_RECIPES | {INBETWEENER.name: INBETWEENER} | MOVER_RECIPES | JUDGES
 EIGHT_BITS = {

@@ -9,8 +9,7 @@ from ..motion.clip import Clip
 from ..performers.walker import Walker
 from ..training import TrainState, train_steps
 from .muon import optimizer_for
-from .train_walker import prepared
-from .walkers import WALKER_TRUNK, Recipe
+from .walker import WALKER_TRUNK, Recipe, prepared
 
 WARM_UP = 100  # steps
 BUDGET = replace(WALKER_TRUNK, name="budget", batch=32, lr=3e-3, decay=0.99)

@@ -27,7 +27,7 @@ from ..performers.ear import Ear, EarConfig, EarOutput, rescaled
 from ..performers.hearing_mofusion import WithEar
 from ..training import LossFn
 from .songs import HeardSongs, songs_as_mel
-from .train_recipe import Provenance, on_device, train_recipe
+from .training import Provenance, on_device, train_recipe
 
 
 @dataclass(frozen=True)

@@ -32,13 +32,12 @@ from ..performers.dance_windows import FITTED, DanceWindows, toes_moved
 from ..performers.inbetweener import Inbetweener, KeyframeConfig
 from ..performers.networks import network
 from ..training import LossFn
-from .dancers import KINEMATIC, DanceLossWeights
-from .dancers import OURS as LOSS_WEIGHTS
+from .dancer import bones_of, digest
 from .drawn_masks import drawn_masks, uniform
-from .mofusion_loss import batch_loss, weighted_loss
+from .mofusion_loss import KINEMATIC, DanceLossWeights, batch_loss, weighted_loss
+from .mofusion_loss import OURS as LOSS_WEIGHTS
 from .recordings import CREDIT, Recorded, training_recordings
-from .train_dancer import bones_of, digest
-from .train_recipe import Provenance, on_device, train_recipe
+from .training import Provenance, on_device, train_recipe
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,8 @@ from ..motion.moving_frame import D
 from ..performers.described_windows import Chosen
 from ..pretrained.judges import Judge
 from ..training import LossFn
-from .train_mover import DescribedData, Truths, described, digest
-from .train_recipe import Provenance, on_device, train_recipe
+from .mover import DescribedData, Truths, described, digest
+from .training import Provenance, on_device, train_recipe
 
 SEEDS = (0, 1, 2)
 

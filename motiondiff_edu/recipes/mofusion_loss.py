@@ -1,6 +1,7 @@
 """What the losses of dancers and movers share: eq. 4 with the terms that a recipe names."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import torch
 from jaxtyping import Bool, Float
@@ -10,9 +11,29 @@ from ..beyond import loss_terms
 from ..ddpm import Schedule, squared_error
 from ..kinematic_loss import Body, KinematicWeights, kinematic_parts, over_time, training_loss
 from ..motion.scaler import Scaler
-from .dancers import DanceLossWeights
 
 BatchLoss = Callable[[nn.Module, Tensor, object, Tensor, torch.Generator], Tensor]
+
+KINEMATIC = KinematicWeights(
+    skeleton=400.0, asymmetry=5.0, motion=0.0, slide=0.3, over_time="alpha_bar"
+)
+
+
+@dataclass(frozen=True)
+class DanceLossWeights:
+    """Weights of the terms of `beyond.loss_terms` in the data loss. All 0 is the paper's loss.
+
+    changes     weight of `changes`
+    toes        weight of `toe_changes`
+    high_noise  largest extra weight of `high_noise_weights`
+    """
+
+    changes: float = 0.0
+    toes: float = 0.0
+    high_noise: float = 0.0
+
+
+OURS = DanceLossWeights(changes=5.0, toes=0.2)
 
 
 def batch_loss(

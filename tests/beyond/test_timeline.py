@@ -25,7 +25,7 @@ from motiondiff_edu.beyond.timeline import (
 )
 from motiondiff_edu.metrics import texts
 from motiondiff_edu.motion.root_frame import FPS
-from motiondiff_edu.recipes.train_mover import timeline_of
+from motiondiff_edu.recipes.mover import timeline_of
 
 
 def test_its_verbs_are_those_of_the_sentences():

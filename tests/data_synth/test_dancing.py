@@ -20,7 +20,7 @@ from data_synth.music.song import GENRES, SAMPLE_RATE
 from data_synth.walking.own_measures import knee_angles
 from motiondiff_edu.motion.formats.bvh import read_bvh
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, HEELS, MIRROR, TOES
-from motiondiff_edu.recipes.dancers import DANCER
+from motiondiff_edu.recipes.dancer import DANCER
 
 METRES = (3, 4, 5)
 TEMPI = {"house": 128, "hiphop": 92, "pop": 117, "latin": 104, "waltz": 101}

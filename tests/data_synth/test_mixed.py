@@ -12,8 +12,7 @@ import torch
 from data_synth.mixed import motions
 from motiondiff_edu.metrics.bodies import bone_rmse
 from motiondiff_edu.pretrained.checkpoints import load_dancer, save
-from motiondiff_edu.recipes.dancers import UNCONDITIONAL
-from motiondiff_edu.recipes.train_dancer import train_dancer, training_windows
+from motiondiff_edu.recipes.dancer import UNCONDITIONAL, train_dancer, training_windows
 
 TINY = replace(
     UNCONDITIONAL,

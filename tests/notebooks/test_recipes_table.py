@@ -7,7 +7,7 @@ import pytest
 
 from motiondiff_edu.diffusion_dropout import P_D
 from motiondiff_edu.modiff import MODIFF_PAPER, MoDiffConfig
-from motiondiff_edu.recipes.walkers import WALKER, WALKER_PAPER, WALKER_PLAIN, WALKER_TRUNK
+from motiondiff_edu.recipes.walker import WALKER, WALKER_PAPER, WALKER_PLAIN, WALKER_TRUNK
 
 
 @pytest.fixture(scope="module")

@@ -23,7 +23,7 @@ from motiondiff_edu.performers.described_windows import DescribedWindows
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.performers.text_mofusion import TextMoFusion
 from motiondiff_edu.pretrained import checkpoints
-from motiondiff_edu.recipes.train_mover import timeline_of
+from motiondiff_edu.recipes.mover import timeline_of
 from motiondiff_edu.training import TrainState, train_steps
 
 

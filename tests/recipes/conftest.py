@@ -2,10 +2,10 @@
 
 import pytest
 
-from motiondiff_edu.recipes import train_recipe
+from motiondiff_edu.recipes import training
 
 
 @pytest.fixture(autouse=True)
 def after_every_step(monkeypatch):
-    monkeypatch.setattr(train_recipe, "SAVE_EVERY", 0.0)
-    monkeypatch.setattr(train_recipe, "LOG_EVERY", 0.0)
+    monkeypatch.setattr(training, "SAVE_EVERY", 0.0)
+    monkeypatch.setattr(training, "LOG_EVERY", 0.0)

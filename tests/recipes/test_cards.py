@@ -7,10 +7,10 @@ from dataclasses import asdict
 import pytest
 
 from motiondiff_edu.pretrained import checkpoints
-from motiondiff_edu.recipes.dancers import SHIPPED_DANCERS
+from motiondiff_edu.recipes.dancer import SHIPPED_DANCERS
 from motiondiff_edu.recipes.inbetweener import INBETWEENER
-from motiondiff_edu.recipes.movers import MOVER
-from motiondiff_edu.recipes.walkers import SHIPPED
+from motiondiff_edu.recipes.mover import MOVER
+from motiondiff_edu.recipes.walker import SHIPPED
 
 
 @pytest.mark.parametrize(

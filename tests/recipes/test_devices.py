@@ -12,9 +12,9 @@ from torch import Tensor, nn
 
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.performers.networks import network
-from motiondiff_edu.recipes import inbetweener, train_dancer, train_mover
-from motiondiff_edu.recipes.dancers import DANCER, REGRESSED, UNCONDITIONAL
-from motiondiff_edu.recipes.movers import MOVER
+from motiondiff_edu.recipes import dancer, inbetweener, mover
+from motiondiff_edu.recipes.dancer import DANCER, REGRESSED, UNCONDITIONAL
+from motiondiff_edu.recipes.mover import MOVER
 from motiondiff_edu.training import LossFn
 
 CLIPS = 12
@@ -38,19 +38,19 @@ def answers(monkeypatch):
 
 def of_dancer(name: str) -> tuple[nn.Module, LossFn]:
     recipe = DANCES[name]
-    windows = train_dancer.training_windows(recipe)
-    loss_fn = train_dancer.loss_of(recipe, windows, train_dancer.schedule_of(recipe))
+    windows = dancer.training_windows(recipe)
+    loss_fn = dancer.loss_of(recipe, windows, dancer.schedule_of(recipe))
     return network(recipe.config), loss_fn
 
 
 def of_mover(name: str) -> tuple[nn.Module, LossFn]:
-    windows = train_mover.training_clips(CLIPS, 1)
+    windows = mover.training_clips(CLIPS, 1)
     recipe = replace(MOVER, config=replace(MOVER.config, words=windows.words), frames=400)
     schedule = cosine_schedule(recipe.config.S)
     model = network(recipe.config)
     if name == "planner":
-        return model.planner, train_mover.plan_loss_of(recipe, windows, schedule)
-    return model, train_mover.loss_of(recipe, windows, schedule)
+        return model.planner, mover.plan_loss_of(recipe, windows, schedule)
+    return model, mover.loss_of(recipe, windows, schedule)
 
 
 def of_inbetweener(name: str) -> tuple[nn.Module, LossFn]:

@@ -13,7 +13,7 @@ from torch import nn
 from motiondiff_edu.cross_modal_attention import Block
 from motiondiff_edu.modiff import MODIFF_SMALL, MoDiff
 from motiondiff_edu.recipes.muon import Muon, MuonAndAdam
-from motiondiff_edu.recipes.runs import resume_run, saver
+from motiondiff_edu.recipes.training import resume_run, saver
 from motiondiff_edu.training import TrainState, train_steps
 
 TINY = replace(MODIFF_SMALL, D=9, T_h=4, T_p=5, S=20, width=16, heads=2, hidden=24)

@@ -11,8 +11,7 @@ import pytest
 from data_synth.walking import walk
 from motiondiff_edu.motion.motion import Motion, MotionError, MotionWarning
 from motiondiff_edu.recipes import __main__ as command
-from motiondiff_edu.recipes.train_walker import clips_of
-from motiondiff_edu.recipes.walkers import WALKER_PRINTED
+from motiondiff_edu.recipes.walker import WALKER_PRINTED, clips_of
 
 TINY = replace(
     WALKER_PRINTED,

@@ -18,9 +18,10 @@ from motiondiff_edu.motion.clip import Clip
 from motiondiff_edu.performers.dance_windows import DanceWindows
 from motiondiff_edu.performers.networks import network
 from motiondiff_edu.performers.windows import Windows
-from motiondiff_edu.recipes import train_dancer, train_walker
-from motiondiff_edu.recipes.dancers import DANCER, DANCER_PLAIN, X0, DanceLossWeights
-from motiondiff_edu.recipes.walkers import MEND_DROPOUT, WALKER_EPS, WALKER_TRUNK, Recipe
+from motiondiff_edu.recipes import dancer, walker
+from motiondiff_edu.recipes.dancer import DANCER, DANCER_PLAIN, X0
+from motiondiff_edu.recipes.mofusion_loss import DanceLossWeights
+from motiondiff_edu.recipes.walker import MEND_DROPOUT, WALKER_EPS, WALKER_TRUNK, Recipe
 
 T_H, T_P = 4, 3
 SIZES = dict(
@@ -79,7 +80,7 @@ def test_walkers_losses_are_those_that_the_shipped_ones_were_trained_with(name, 
     torch.manual_seed(0)
     model = network(recipe.config, walks.pose_scaler, walks.control_scaler)
     loss_fn, generator = (
-        train_walker.loss_of(replace(recipe, batch=6), walks, schedule, dropout),
+        walker.loss_of(replace(recipe, batch=6), walks, schedule, dropout),
         seeded(),
     )
     assert [loss_fn(model, generator).item() for _ in range(3)] == pytest.approx(losses, rel=2e-5)
@@ -132,13 +133,13 @@ DANCED_WITH = {
 @pytest.mark.parametrize("name", DANCED_WITH)
 def test_dancers_losses_are_those_that_the_shipped_ones_were_trained_with(name):
     recipe, losses, after = DANCED_WITH[name]
-    schedule = train_dancer.schedule_of(recipe)
+    schedule = dancer.schedule_of(recipe)
     torch.manual_seed(0)
     model = MoFusion(recipe.config)
     torch.nn.init.normal_(model.out.weight, std=0.1)
     windows = dances(music=recipe.config.C > 0)
     loss_fn, generator = (
-        train_dancer.loss_of(replace(recipe, batch=6), windows, schedule),
+        dancer.loss_of(replace(recipe, batch=6), windows, schedule),
         seeded(),
     )
     assert [loss_fn(model, generator).item() for _ in range(3)] == pytest.approx(losses, rel=2e-5)
@@ -156,7 +157,7 @@ def test_a_recipe_without_departures_is_algorithm_1(walks, rate, weight):
     recipe = Recipe("printed", model.config, steps=1, batch=7, held_control=0.0)
     recipe = replace(recipe, noised_past_weight=weight)
     dropout = Dropout(schedule, lambda done: rate, 1, done=0.0) if rate else None
-    loss = train_walker.loss_of(recipe, walks, schedule, dropout)(model, seeded())
+    loss = walker.loss_of(recipe, walks, schedule, dropout)(model, seeded())
 
     generator = seeded()
     start = walks.starts[torch.randint(len(walks.starts), (7,), generator=generator)]
@@ -184,11 +185,11 @@ def test_without_departures_a_dancer_s_loss_is_the_mean_square_of_eps():
     recipe = replace(
         EPS, kinematic=None, loss_weights=DanceLossWeights(), gain_noise=0.0, snr=1.0, batch=5
     )
-    windows, schedule = dances(), train_dancer.schedule_of(recipe)
+    windows, schedule = dances(), dancer.schedule_of(recipe)
     generator = seeded()
     torch.manual_seed(0)
     model = MoFusion(recipe.config)
-    loss = train_dancer.loss_of(recipe, windows, schedule)(model, seeded())
+    loss = dancer.loss_of(recipe, windows, schedule)(model, seeded())
     x0, mel, _ = windows.draw(5, generator)
     s = torch.randint(1, 51, (5,), generator=generator)
     eps = torch.randn(x0.shape, generator=generator)

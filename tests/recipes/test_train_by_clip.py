@@ -15,8 +15,10 @@ from motiondiff_edu.performers.networks import network
 from motiondiff_edu.performers.text_mofusion import TextMoFusionConfig
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.recipes import __main__ as command
-from motiondiff_edu.recipes.movers import MOVER, MOVER_CLIP, MoverRecipe
-from motiondiff_edu.recipes.train_mover import (
+from motiondiff_edu.recipes.mover import (
+    MOVER,
+    MOVER_CLIP,
+    MoverRecipe,
     loss_of,
     texts_by,
     train_mover,

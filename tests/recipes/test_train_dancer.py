@@ -18,7 +18,7 @@ from motiondiff_edu.performers.ear import EarConfig
 from motiondiff_edu.performers.networks import network
 from motiondiff_edu.pretrained.checkpoints import load_dancer, pretrained
 from motiondiff_edu.recipes import __main__ as command
-from motiondiff_edu.recipes.dancers import (
+from motiondiff_edu.recipes.dancer import (
     DANCE_RECIPES,
     DANCER,
     DANCER_PLAIN,
@@ -27,10 +27,13 @@ from motiondiff_edu.recipes.dancers import (
     UNCONDITIONAL,
     X0,
     DanceRecipe,
+    loss_of,
+    schedule_of,
+    train_dancer,
+    training_windows,
 )
 from motiondiff_edu.recipes.ear import EarRecipe, ear_of, ear_within
 from motiondiff_edu.recipes.songs import training_songs
-from motiondiff_edu.recipes.train_dancer import loss_of, schedule_of, train_dancer, training_windows
 
 SIZES = {"steps": 6, "songs": 2, "seconds": 8.0, "batch": 3, "frames": 40}
 SMALL_EAR = {"ear_width": 16, "ear_blocks": 1}

@@ -13,9 +13,11 @@ from motiondiff_edu.motion.moving_frame import D
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.performers.planned_mofusion import PlannedConfig, PlannedMoFusion
 from motiondiff_edu.performers.text_mofusion import TextMoFusion, TextMoFusionConfig
-from motiondiff_edu.recipes.dancers import KINEMATIC, DanceLossWeights
-from motiondiff_edu.recipes.movers import MOVER, MOVER_PLAIN, MoverRecipe
-from motiondiff_edu.recipes.train_mover import (
+from motiondiff_edu.recipes.mofusion_loss import KINEMATIC, DanceLossWeights
+from motiondiff_edu.recipes.mover import (
+    MOVER,
+    MOVER_PLAIN,
+    MoverRecipe,
     loss_of,
     plan_loss_of,
     toes_moved,
@@ -24,7 +26,7 @@ from motiondiff_edu.recipes.train_mover import (
     training_clips,
     without_some,
 )
-from motiondiff_edu.recipes.train_recipe import Provenance
+from motiondiff_edu.recipes.training import Provenance
 
 SIZES = {"widths": (16, 24), "heads": 2, "C": 20, "S": 20, "word_layers": 1}
 TINY = TextMoFusionConfig(**SIZES)

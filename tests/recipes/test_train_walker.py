@@ -15,12 +15,18 @@ from motiondiff_edu.diffusion_dropout import P_D, Dropout
 from motiondiff_edu.modiff import MODIFF_SMALL, MoDiff
 from motiondiff_edu.pretrained.checkpoints import load_walker, save
 from motiondiff_edu.recipes import __main__ as command
-from motiondiff_edu.recipes import train_walker as train_module
+from motiondiff_edu.recipes import walker as train_module
 from motiondiff_edu.recipes.budget import BUDGET, train_for
-from motiondiff_edu.recipes.runs import notes_of
-from motiondiff_edu.recipes.train_recipe import commit_of
-from motiondiff_edu.recipes.train_walker import train, training_clips
-from motiondiff_edu.recipes.walkers import RECIPES, SHIPPED, WALKER_TRUNK, LossWeights, Recipe
+from motiondiff_edu.recipes.training import commit_of, notes_of
+from motiondiff_edu.recipes.walker import (
+    RECIPES,
+    SHIPPED,
+    WALKER_TRUNK,
+    LossWeights,
+    Recipe,
+    train,
+    training_clips,
+)
 
 TINY = replace(MODIFF_SMALL, width=16, heads=2, hidden=24, T_p=5)
 SHORT = Recipe("short", TINY, steps=6, batch=3, clips=2, seconds=2.0, reversed_share=1.0)

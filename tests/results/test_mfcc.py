@@ -12,9 +12,8 @@ from scipy.fft import dct
 
 from data_synth.music import compose
 from motiondiff_edu.conditions.music import log_mel
-from motiondiff_edu.recipes.dancers import DANCER
+from motiondiff_edu.recipes.dancer import DANCER, training_windows
 from motiondiff_edu.recipes.songs import training_songs
-from motiondiff_edu.recipes.train_dancer import training_windows
 from tools.results.dances.mfcc import marks, mfcc_and_beats, with_music_features
 from tools.results.dances.songs import mel_of
 

@@ -12,7 +12,7 @@ from motiondiff_edu.motion.skeleton import MIRROR
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.performers.networks import network
 from motiondiff_edu.pretrained.judges import judges
-from motiondiff_edu.recipes.movers import MOVER
+from motiondiff_edu.recipes.mover import MOVER
 from tools.results.intervals import interval
 from tools.results.sweep import run
 from tools.results.walks import scores as walk_scores

@@ -16,17 +16,17 @@ from motiondiff_edu.baselines.transformer import TransformerConfig
 from motiondiff_edu.mofusion import MOFUSION_SMALL
 from motiondiff_edu.performers.dance_windows import DanceWindows
 from motiondiff_edu.performers.dancer import ETA, STEPS, Dancer
-from motiondiff_edu.recipes.dancers import (
+from motiondiff_edu.recipes.dancer import (
     DANCER_PLAIN,
     HEARING,
-    KINEMATIC,
     X0,
-    DanceLossWeights,
     SongRecipe,
+    train_dancer,
+    training_windows,
 )
 from motiondiff_edu.recipes.ear import EAR
+from motiondiff_edu.recipes.mofusion_loss import KINEMATIC, DanceLossWeights
 from motiondiff_edu.recipes.songs import training_songs
-from motiondiff_edu.recipes.train_dancer import train_dancer, training_windows
 
 from ..page.records import DANCES
 from ..sweep import Sweep, Variant
@@ -121,7 +121,7 @@ QUICK = Budget(3, 2, 8.0, batch=3, ear_steps=2, measured=DanceSize(3, 1, 2, 2))
 
 
 def recipe_of(name: str, budget: Budget, seed: int = 0) -> SongRecipe:
-    """The training of one variant with one seed, as `recipes.train_dancer` understands it."""
+    """The training of one variant with one seed, as `recipes.dancer` understands it."""
     config, settings = VARIANTS[name].recipe
     sizes = {key: getattr(budget, key) for key in ("steps", "songs", "seconds", "batch")}
     plain = {"config": config, "gain_noise": 0.0, "no_music": 0.0, "ear": None}

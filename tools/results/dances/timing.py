@@ -14,8 +14,8 @@ from benchmarks.records import record
 from motiondiff_edu.performers.dance_windows import DanceWindows
 from motiondiff_edu.performers.dancer import STEPS, Dancer
 from motiondiff_edu.performers.networks import network
+from motiondiff_edu.recipes.dancer import loss_of, schedule_of
 from motiondiff_edu.recipes.muon import optimizer_for
-from motiondiff_edu.recipes.train_dancer import loss_of, schedule_of
 from motiondiff_edu.training import TrainState, train_steps
 
 from .budget import MUSIC_FEATURES, Budget, material, recipe_of

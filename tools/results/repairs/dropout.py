@@ -15,8 +15,7 @@ import numpy as np
 from motiondiff_edu.metrics.walks import adherence
 from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.pretrained import checkpoints
-from motiondiff_edu.recipes.train_walker import train, training_clips
-from motiondiff_edu.recipes.walkers import MEND_PLAIN, Recipe
+from motiondiff_edu.recipes.walker import MEND_PLAIN, Recipe, train, training_clips
 
 from ..sweep import Rows, Sweep, Variant, minus
 from ..walks.parts import weights_digest

@@ -28,8 +28,7 @@ from motiondiff_edu.motion.cleanup import clean_up
 from motiondiff_edu.motion.root_frame import root_path, to_root_frame, to_world
 from motiondiff_edu.motion.skeleton import TOES, J
 from motiondiff_edu.performers.walker import STEPS, Walker
-from motiondiff_edu.recipes.train_walker import train, training_clips
-from motiondiff_edu.recipes.walkers import LossWeights, Recipe
+from motiondiff_edu.recipes.walker import LossWeights, Recipe, train, training_clips
 
 from ..repairs.trials import SHARE, continued
 from ..sweep import Rows, Sweep, Variant, minus

@@ -22,8 +22,14 @@ from motiondiff_edu.beyond.footholds import FootholdConfig
 from motiondiff_edu.diffusion_dropout import P_D
 from motiondiff_edu.metrics.walks import adherence, skating
 from motiondiff_edu.performers.walker import Walker
-from motiondiff_edu.recipes.train_walker import train, training_clips
-from motiondiff_edu.recipes.walkers import MEND_CONFIG, OURS, LossWeights, Recipe
+from motiondiff_edu.recipes.walker import (
+    MEND_CONFIG,
+    OURS,
+    LossWeights,
+    Recipe,
+    train,
+    training_clips,
+)
 
 from ..repairs.trials import SHARE, continued
 from ..sweep import Rows, Sweep, Variant, minus

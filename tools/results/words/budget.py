@@ -23,9 +23,8 @@ from motiondiff_edu.metrics.texts import actions
 from motiondiff_edu.motion import moving_frame
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.pretrained.judges import judges
-from motiondiff_edu.recipes.dancers import DanceLossWeights
-from motiondiff_edu.recipes.movers import MOVER, MoverRecipe
-from motiondiff_edu.recipes.train_mover import train_mover
+from motiondiff_edu.recipes.mofusion_loss import DanceLossWeights
+from motiondiff_edu.recipes.mover import MOVER, MoverRecipe, train_mover
 
 from ..sweep import Sweep, Variant
 from ..walks.scores import Kind, ratio, root_mean, squared_bone_error

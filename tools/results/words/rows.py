@@ -16,7 +16,7 @@ from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.motion import moving_frame
 from motiondiff_edu.motion.dance_frame import at_origin
 from motiondiff_edu.performers.mover import ETA, Mover
-from motiondiff_edu.recipes.movers import MOVER
+from motiondiff_edu.recipes.mover import MOVER
 
 from .trials import Positions, Trials, other_captions
 

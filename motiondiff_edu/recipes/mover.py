@@ -1,6 +1,7 @@
-"""Train a mover by its recipe: described clips, words, loss, card.
+"""How movers are made: described clips, words, MoFusion's loss with a recipe's departures.
 
-The loss is MoFusion's with the departures of the recipe. A killed run continues from its last save.
+The paper gives no widths, no steps and no weights of its losses, so all numbers are ours. A killed
+run continues from its last save.
 """
 
 import copy
@@ -18,24 +19,71 @@ from .._files import digest_of_tensors, digest_of_texts
 from ..beyond import loss_terms
 from ..beyond.schedules import shifted
 from ..beyond.timeline import Timed, timeline
+from ..conditions import clip
 from ..conditions.clip import Clip, check
 from ..conditions.clip import load as load_clip
 from ..conditions.text import base_vocabulary, read
 from ..conditions.word_encoder import NOTHING, PADDING, ids_of
 from ..ddpm import Schedule, cosine_schedule
-from ..kinematic_loss import training_loss
+from ..kinematic_loss import KinematicWeights, training_loss
 from ..motion import moving_frame
 from ..motion.skeleton import TOES
 from ..performers.described_windows import GRID, DescribedWindows
 from ..performers.mover import Mover
 from ..performers.networks import network
 from ..performers.planned_mofusion import Performing, PlannedConfig, PlannedMoFusion
-from ..performers.text_mofusion import Texts
+from ..performers.text_mofusion import TextMoFusionConfig, Texts
 from ..training import LossFn
-from .mofusion_loss import batch_loss, weighted_loss
-from .movers import MoverRecipe
-from .train_recipe import Provenance, final_loss, on_device, train_recipe
+from .mofusion_loss import KINEMATIC, OURS, DanceLossWeights, batch_loss, weighted_loss
+from .training import Provenance, final_loss, on_device, train_recipe
 
+
+# ---- recipes -------------------------------------------------------------------------------------
+@dataclass(frozen=True)
+class MoverRecipe:
+    """One training run of a mover; by default with the paper's loss.
+
+    The data are `clips` described clips of `data_synth.actions`; every clip is also mirrored, with
+    its words. The words of the configuration are those of the captions, unless it names a CLIP.
+    """
+
+    name: str
+    config: TextMoFusionConfig
+    steps: int
+    plan_steps: int = 0  # afterwards, of the network for timelines alone, which needs more of them
+    kinematic: KinematicWeights | None = None
+    loss_weights: DanceLossWeights = DanceLossWeights()
+    metres: float = 0.0  # power of `beyond.loss_terms.metre_weights`; 0: all columns alike
+    snr: float = 1.0  # factor on the signal-to-noise ratio of the cosine schedule
+    frames: int = 3072  # of a batch, all motions together
+    no_text: float = 0.0  # share of the texts left out: `beyond.classifier_free`
+    lr: float = 2e-3
+    optimizer: str = "muon"
+    decay: float = 0.999
+    clips: int = 12_000
+    data_seed: int = 1
+    seed: int = 0
+
+
+MOVER_PLAIN = MoverRecipe(
+    "mover-plain",
+    PlannedConfig(),
+    steps=10_000,
+    plan_steps=14_000,
+    loss_weights=OURS,
+    metres=1.0,
+    snr=0.1,
+    no_text=0.1,
+)
+MOVER = replace(MOVER_PLAIN, name="mover", kinematic=replace(KINEMATIC, slide=1.0))
+# The paper's own way to read. Never trained here, because no weights of CLIP were at hand.
+MOVER_CLIP = replace(
+    MOVER, name="mover-clip", config=replace(MOVER.config, clip=clip.NAME, clip_width=clip.WIDTH)
+)
+MOVER_RECIPES = {recipe.name: recipe for recipe in (MOVER, MOVER_PLAIN, MOVER_CLIP)}
+
+
+# ---- training ------------------------------------------------------------------------------------
 WARMUP = 300  # steps
 
 Truths = dict[int, list[tuple[Hashable, Hashable]]]

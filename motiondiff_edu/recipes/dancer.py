@@ -1,8 +1,11 @@
-"""Train a dancer by its recipe: songs, dances, windows, loss, card.
+"""How dancers are made: songs, dances, windows, MoFusion's loss with a recipe's departures.
 
-The loss is MoFusion's with the departures of the recipe. A killed run continues from its last save.
+The paper gives no widths, no steps and no weights of its losses, so all numbers are ours. A killed
+run continues from its last save.
+Notebook: 13
 """
 
+from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from pathlib import Path
 
@@ -11,23 +14,114 @@ import torch
 from torch import Tensor, nn
 
 from .._files import digest_of_tensors
+from ..baselines.hearing_transformer import HearingTransformerConfig
 from ..baselines.regression import regression_loss
 from ..beyond.classifier_free import without
 from ..beyond.gain_noise import gain_noise
 from ..beyond.schedules import shifted
 from ..ddpm import Schedule, cosine_schedule
+from ..kinematic_loss import KinematicWeights
 from ..metrics.bodies import bone_lengths
+from ..mofusion import MOFUSION_FULL, MOFUSION_SMALL
 from ..motion import dance_frame
 from ..performers.dance_windows import DanceWindows, toes_moved
 from ..performers.dancer import Dancer
-from ..performers.networks import network
+from ..performers.hearing_mofusion import HearingConfig
+from ..performers.networks import Config, network
 from ..training import LossFn
-from .dancers import DanceRecipe, SongRecipe
-from .ear import TrainedEar, ear_of
-from .mofusion_loss import batch_loss, weighted_loss
+from .ear import EAR, EarRecipe, TrainedEar, ear_of
+from .mofusion_loss import KINEMATIC, OURS, DanceLossWeights, batch_loss, weighted_loss
 from .songs import songs_as_mel
-from .train_recipe import Provenance, on_device, train_recipe
+from .training import Provenance, on_device, train_recipe
 
+
+# ---- recipes -------------------------------------------------------------------------------------
+@dataclass(frozen=True)
+class DanceRecipe:
+    """One training run of a dancer; by default with the paper's loss.
+
+    The data are `songs` songs of `seconds` each with `dances` dances each; every dance is also
+    mirrored.
+    """
+
+    name: str
+    config: Config  # of a network for dancers (`performers.networks`)
+    steps: int
+    kinematic: KinematicWeights | None = None
+    loss_weights: DanceLossWeights = DanceLossWeights()
+    gain_noise: float = 0.0  # `beyond.gain_noise`
+    snr: float = 1.0  # factor on the signal-to-noise ratio of the cosine schedule
+    frames: int = 100  # per window
+    lr: float = 3e-3
+    optimizer: str = "muon"
+    batch: int = 32
+    decay: float = 0.999
+    songs: int = 1500
+    seconds: float = 20.0
+    dances: int = 2  # per song
+    motions: int = 0  # if not 0: so many walks and dances without music, instead of songs
+    data_seed: int = 1
+    seed: int = 0
+
+
+@dataclass(frozen=True)
+class SongRecipe(DanceRecipe):
+    """A training run on songs like real ones, usually with an ear that is trained first.
+
+    Raises ValueError for a regression that is to dance without music, too (it has one dance only),
+    and for an ear that does not fit the network.
+    """
+
+    no_music: float = 0.0  # share of the music left out: `beyond.classifier_free`
+    ear: EarRecipe | None = EAR
+
+    def __post_init__(self):
+        if self.no_music and getattr(self.config, "deterministic", False):
+            raise ValueError("no_music: a regression cannot be guided, so it always has its music")
+        own = getattr(self.config, "ear", None)
+        given = self.ear.config if self.ear else None
+        if own != given:
+            wanted = f"an ear with {own}" if own else "no ear: pass ear=None"
+            found = (
+                f"the ear given has {given}" if given else "none is given: pass ear=EarRecipe(...)"
+            )
+            raise ValueError(f"{self.name}: its network has {wanted}; {found}")
+
+
+X0 = replace(MOFUSION_SMALL, target="x0", skip=False)
+HEARING = HearingConfig(target="x0", skip=False)
+DANCER_PLAIN = SongRecipe(
+    "dancer-plain", HEARING, steps=8_000, loss_weights=OURS, gain_noise=0.3, snr=0.1, no_music=0.15
+)
+DANCER = replace(DANCER_PLAIN, name="dancer", kinematic=KINEMATIC)
+REGRESSED = SongRecipe(
+    "regression",
+    HearingTransformerConfig(deterministic=True),
+    steps=3000,
+    gain_noise=0.3,
+    snr=0.1,
+)
+# never trained: it needs a GPU
+FULL = replace(HEARING, widths=MOFUSION_FULL.widths, heads=MOFUSION_FULL.heads)
+DANCER_FULL = replace(DANCER, name="dancer-full", config=FULL, steps=200_000, batch=64)
+
+UNCONDITIONAL = DanceRecipe(
+    "unconditional",
+    replace(X0, C=0),
+    steps=6000,
+    kinematic=KINEMATIC,
+    loss_weights=OURS,
+    gain_noise=0.3,
+    snr=0.1,
+    songs=0,
+    motions=3000,
+)
+
+SHIPPED_DANCERS = (DANCER, DANCER_PLAIN, REGRESSED, UNCONDITIONAL)
+DANCE_RECIPES = {recipe.name: recipe for recipe in (*SHIPPED_DANCERS, DANCER_FULL)}
+
+
+# ---- training ------------------------------------------------------------------------------------
 ONE_BODY = 0.1  # cm: bones that differ by less are the same
 
 
