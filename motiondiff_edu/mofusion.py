@@ -67,6 +67,11 @@ class MoFusionConfig:
         if self.target not in TARGETS:
             raise ValueError(f"target must be one of {', '.join(TARGETS)}, not {self.target!r}")
 
+    @property
+    def context_width(self) -> int:
+        """Of the music's tokens: that of the second level, where there are two."""
+        return self.widths[:2][-1]
+
     def as_dict(self) -> dict:
         return asdict(self)
 
@@ -195,7 +200,7 @@ class MoFusion(nn.Module):
         self.step_in = nn.Sequential(
             nn.Linear(width, width), nn.SiLU(), nn.Linear(width, width), nn.SiLU()
         )
-        context = widths[1 if len(widths) > 1 else 0]
+        context = config.context_width
         self.music = MusicEncoder(config.C, context, config.music_layers) if config.C else None
         self.into = FrameConv(config.D, first)
 

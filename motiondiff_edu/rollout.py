@@ -31,7 +31,8 @@ COLUMNS = ("forward speed", "speed to the left", "turning rate")  # m/s, m/s, ra
 class Units(Protocol):
     """Conversion between metres (or m/s) and a network's units; `mean` is on its device."""
 
-    mean: Tensor
+    @property
+    def mean(self) -> Tensor: ...
 
     def transform(self, x: Tensor) -> Tensor: ...
 
@@ -42,10 +43,17 @@ class Units(Protocol):
 class Sizes(Protocol):
     """Frames given (T_h) and predicted (T_p); widths of a pose (D) and of a row of control (C)."""
 
-    T_h: int
-    T_p: int
-    D: int
-    C: int
+    @property
+    def T_h(self) -> int: ...
+
+    @property
+    def T_p(self) -> int: ...
+
+    @property
+    def D(self) -> int: ...
+
+    @property
+    def C(self) -> int: ...
 
 
 @runtime_checkable
@@ -59,8 +67,11 @@ class AnyWalker(Protocol):
     @property
     def config(self) -> Sizes: ...
 
-    pose_scaler: Units
-    control_scaler: Units
+    @property
+    def pose_scaler(self) -> Units: ...
+
+    @property
+    def control_scaler(self) -> Units: ...
 
     def window_sampler(self, steps: int | None = None) -> WindowSampler: ...
 

@@ -28,7 +28,8 @@ from ..performers.dancer import STEPS, Dancer
 # of a gap
 WEIGHT = 0.5
 FADE = 10  # frames within which a correction fades before the first and after the last given entry
-Given, Known = Float[Tensor, "B T 63"], Bool[Tensor, "B T 63"]
+Given = Float[Tensor, "B T 63"]
+Known = Bool[Tensor, "B T 63"]
 # (denoiser, schedule, given, known) -> a denoiser that respects what is given
 Steer = Callable[[Denoiser, Schedule, Tensor, Tensor], Denoiser]
 

@@ -89,25 +89,24 @@ class Motion:
 
         Raises MotionError for a missing joint, another skeleton, or a single frame.
         """
-        root = self._path()
+        root = self.path()
         poses, control = to_root_frame(self.positions, root[:, :2], root[:, 2], self.fps)
         return Clip(poses, control, self.fps, self.contacts, self.source)
 
-    def rooted(self) -> "Motion":
-        """The same motion with a `root`: its own, or the smoothed pelvis on the ground.
+    def path(self) -> Float[np.ndarray, "T 3"]:
+        """The root in each frame (x, z, heading): `root`, or the smoothed pelvis on the ground.
 
         Raises MotionError as `to_clip` does.
         """
         self.check_whole()
         if self.root is not None:
-            return self
+            return self.root
         place, heading = estimate_root(self.positions, self.fps)
-        return replace(self, root=np.concatenate([place, heading[:, None]], axis=1))
+        return np.column_stack([place, heading])
 
-    def _path(self) -> Float[np.ndarray, "T 3"]:
-        path = self.rooted().root
-        assert path is not None  # `rooted` sees to it
-        return path
+    def rooted(self) -> "Motion":
+        """The same motion with its `path` as its `root`."""
+        return replace(self, root=self.path())
 
     @property
     def control(self) -> Float[np.ndarray, "T 3"]:
@@ -115,7 +114,7 @@ class Motion:
 
         Raises MotionError as `to_clip` does.
         """
-        root = self._path()
+        root = self.path()
         return control_from_path(root[:, :2], root[:, 2], self.fps)
 
     @property

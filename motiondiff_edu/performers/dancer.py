@@ -11,13 +11,13 @@ from typing import BinaryIO
 import numpy as np
 import torch
 from jaxtyping import Float
-from torch import Tensor, nn
+from torch import Tensor
 
 from ..beyond.classifier_free import guided_by_condition, while_between, without
 from ..beyond.guidance import with_guess
 from ..conditions.audio_files import SILENT, AudioError, samples_of
 from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, fingerprint, frame_times, log_mel
-from ..ddpm import Denoiser, Generators, Schedule, draw
+from ..ddpm import Denoiser, Generators, draw
 from ..mofusion import MoFusion, MoFusionConfig, Music
 from ..motion.checks import (
     checked_guidance,
@@ -32,7 +32,7 @@ from ..motion.motion import Motion, MotionWarning
 from ..motion.retarget import SHORTEST
 from ..motion.scaler import Scaler
 from .dance_windows import FPS, mel_frames
-from .networks import register
+from .networks import DancerNetwork, register
 from .performer import Performer, Watch, bar, evaluating, generators, sampled
 
 STEPS, ETA = 50, 1.0  # defaults of DDIM; with less fresh noise, dances to a song differ less
@@ -52,8 +52,7 @@ register("dancer", MoFusion, MoFusionConfig)
 class Dancer(Performer):
     """A network, and the scalers that convert metres and log-Mel to its units and back."""
 
-    model: nn.Module
-    schedule: Schedule
+    model: DancerNetwork
     motion_scaler: Scaler
     mel_scaler: Scaler
     card: dict = field(default_factory=dict)
@@ -141,7 +140,7 @@ class Dancer(Performer):
 
     def _to(self, music: Music | None, frames: int) -> Denoiser:
         """The denoiser for music that the network has listened to already."""
-        return self._denoiser(self.model.decode, self._encoded(self.model, music, frames))
+        return self._denoiser(self.model.decode, self._encoded(self.model.encode, music, frames))
 
     def _clamped(self, denoise: Denoiser) -> Denoiser:
         if self.config.target != "eps":

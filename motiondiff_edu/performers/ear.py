@@ -8,7 +8,9 @@ Ours; see `beyond.hearing`.  Notebook: 12
 """
 
 import copy
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import torch
 from jaxtyping import Bool, Float
@@ -97,7 +99,8 @@ class Ear(nn.Module):
         angles = angles_of(
             times[:: self.stride], config.width // config.heads, config.slowest, config.fastest
         )
-        for block in self.blocks:
+        blocks: Iterable[Any] = self.blocks  # torch's stubs say of a list that it holds Modules
+        for block in blocks:
             tokens = in_parts(block, tokens, angles, seen)
         return self.norm(tokens)
 
@@ -142,6 +145,6 @@ def rescaled(ear: Ear, own: Scaler, other: Scaler) -> Ear:
     other_ear = copy.deepcopy(ear)
     first = other_ear.music.project
     with torch.no_grad():
-        first.bias += first.weight @ ((other.mean - own.mean) / own.std)
-        first.weight *= other.std / own.std
+        first.bias.add_(first.weight @ ((other.mean - own.mean) / own.std))
+        first.weight.mul_(other.std / own.std)
     return other_ear

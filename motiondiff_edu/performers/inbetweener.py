@@ -21,7 +21,7 @@ from torch import Tensor, nn
 from ..beyond.activity import USED_AT_MOST, with_activity
 from ..beyond.around_lines import GivenLines
 from ..beyond.turning_frame import TurningFrame
-from ..ddpm import Denoiser, Generators, Schedule, draw, final
+from ..ddpm import Denoiser, Generators, draw, final
 from ..inbetweening import inpaint_steps
 from ..mofusion import MoFusion, MoFusionConfig
 from ..motion.known import checked_given, given_features, with_given
@@ -101,8 +101,7 @@ class Inbetweener(Performer):
     Source: MoFusion 4.4.
     """
 
-    model: nn.Module
-    schedule: Schedule
+    model: KeyframeMoFusion
     motion_scaler: Scaler
     card: dict = field(default_factory=dict)
 

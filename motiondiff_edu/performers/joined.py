@@ -24,8 +24,8 @@ from ..motion.cleanup import clean_up
 from ..motion.motion import Motion, MotionError
 from ..motion.planting import SHANK, THIGH
 from ..motion.root_frame import FPS, root_path, to_world
-from ..motion.scaler import Scaler
 from ..motion.skeleton import JOINTS, PARENTS, J, joint_index
+from ..rollout import Units
 
 # m in a frame more than in the two frames on either side: a jump at the seam that is said; from a
 # synthetic walk no joint goes 3 cm farther
@@ -56,17 +56,16 @@ class Start:
     @classmethod
     def of(cls, motion: Motion, control: Float[np.ndarray, "n 3"], T_h: int) -> "Start":
         """From the last T_h frames of a motion at 20 frames/s on.  Raises MotionError for fewer."""
-        given = motion.rooted()
-        clip = given.to_clip()
+        clip = motion.to_clip()
         if len(clip) < T_h:
             raise MotionError(
                 f"{motion.name} has {len(clip)} frames; the walker needs at least {T_h} "
                 f"({T_h / FPS:g} s) to continue it"
             )
         rows = splice(clip.control, control, T_h)
-        place, heading = root_path(rows, tuple(given.root[-T_h]))
+        place, heading = root_path(rows, tuple(motion.path()[-T_h]))
         path = np.column_stack([place, heading])
-        return cls(given.positions, clip.poses[-T_h:], rows, path)
+        return cls(motion.positions, clip.poses[-T_h:], rows, path)
 
     def in_world(self, new: Float[np.ndarray, "n 21 3"]) -> Float[np.ndarray, "n 21 3"]:
         """New frames of the root frame, placed in the world."""
@@ -99,7 +98,7 @@ def placed(
 
 
 def unlike_training(
-    scaler: Scaler, past: Float[Tensor, "T D"], known: Bool[np.ndarray, "T J"] | None = None
+    scaler: Units, past: Float[Tensor, "T D"], known: Bool[np.ndarray, "T J"] | None = None
 ) -> dict[str, float]:
     """Joints that are far from the training's poses, in its standard deviations, farthest first.
 

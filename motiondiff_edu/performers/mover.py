@@ -10,14 +10,14 @@ from dataclasses import dataclass, field
 import numpy as np
 import torch
 from jaxtyping import Float
-from torch import Tensor, nn
+from torch import Tensor
 
 from ..beyond import timeline
 from ..beyond.classifier_free import guided_by_condition
 from ..conditions.clip import Clip, check
 from ..conditions.text import Read
 from ..conditions.word_encoder import WordReader
-from ..ddpm import Denoiser, Generators, Schedule, draw
+from ..ddpm import Denoiser, Generators, draw
 from ..motion.checks import (
     checked_guidance,
     checked_samples,
@@ -32,9 +32,10 @@ from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 from ..motion.skeleton import BONE_LENGTHS
 from .described_windows import GRID
+from .networks import MoverConfig, MoverNetwork
 from .performer import Performer, Watch, bar, evaluating, generators, sampled
 from .planned_mofusion import PlannedMoFusion
-from .text_mofusion import Texts
+from .text_mofusion import TextMoFusionConfig, Texts
 
 STEPS, ETA = 50, 0.5  # defaults of DDIM
 SECONDS = 6.0
@@ -59,21 +60,25 @@ class Mover(Performer):
     ClipError for another CLIP than that of the training.
     """
 
-    model: nn.Module
-    schedule: Schedule
+    model: MoverNetwork
     motion_scaler: Scaler
     card: dict = field(default_factory=dict)
     clip: Clip | None = None
 
     def __post_init__(self):
         super().__post_init__()
-        name = getattr(self.config, "clip", "")
-        if name and self.clip is None:
-            raise ValueError(f"the network reads by CLIP: pass clip=conditions.clip.load({name!r})")
-        if self.clip is not None and not name:
+        config = self.config
+        if isinstance(config, TextMoFusionConfig) and config.clip:
+            if self.clip is None:
+                how = f"pass clip=conditions.clip.load({config.clip!r})"
+                raise ValueError(f"the network reads by CLIP: {how}")
+            check(self.clip, config.clip_width, self.card.get("clip_sample"))
+        elif self.clip is not None:
             raise ValueError("the network reads words of its own, and takes no CLIP")
-        if self.clip is not None:
-            check(self.clip, self.config.clip_width, self.card.get("clip_sample"))
+
+    @property
+    def config(self) -> MoverConfig:
+        return self.model.config
 
     @property
     def device(self) -> torch.device:
@@ -109,7 +114,12 @@ class Mover(Performer):
         return self._guided(self.model, ids, frames, guidance, given.expand(len(ids), -1, -1))
 
     def plan_denoiser(self, ids: Texts, frames: int, guidance: float = 1.0) -> Denoiser:
-        """The same for timelines in the network's units, of a network that plans."""
+        """The same for timelines in the network's units.
+
+        Raises ValueError for a network that does not plan.
+        """
+        if not isinstance(self.model, PlannedMoFusion):
+            raise ValueError("this mover makes no plans")
         return self._guided(self.model.planner, ids, frames, guidance)
 
     def _plan(self, plan: Tensor | np.ndarray, texts: int, frames: int) -> Float[Tensor, "#B T 22"]:
@@ -125,7 +135,7 @@ class Mover(Performer):
         return made
 
     def _guided(
-        self, network: nn.Module, ids: Texts, frames: int, guidance: float, *plans: Tensor
+        self, network: MoverNetwork, ids: Texts, frames: int, guidance: float, *plans: Tensor
     ) -> Denoiser:
         """The denoiser of a network for these texts, away from no text if guidance is not 1."""
         guidance = checked_guidance(guidance)
@@ -208,8 +218,9 @@ class Mover(Performer):
         watch = bar("moving", (steps or self.schedule.S) + 1, progress)
         plan = None
         if self.can_plan:
-            how = {"generator": draws, "steps": steps, "guidance": guidance, "watch": watch}
-            plan = self.plans(ids, whole, **how)
+            plan = self.plans(
+                ids, whole, generator=draws, steps=steps, guidance=guidance, watch=watch
+            )
         denoise = self.denoiser(ids, whole, guidance, plan)
         x_S = self._noise((count, whole, D), draws, None)
         made = self.positions_of(sampled(denoise, x_S, self.schedule, steps, ETA, draws, watch))
@@ -240,8 +251,9 @@ class Mover(Performer):
         Raises ValueError for a plan of another length or shape.
         """
         if plan is None and self.can_plan:
-            how = {"generator": generator, "steps": steps, "eta": eta, "guidance": guidance}
-            plan = self.plans(ids, frames, **how)
+            plan = self.plans(
+                ids, frames, generator=generator, steps=steps, eta=eta, guidance=guidance
+            )
         denoise = self.denoiser(ids, frames, guidance, plan)
         x_S = self._noise((len(ids), frames, D), generator, start)
         return self.positions_of(sampled(denoise, x_S, self.schedule, steps, eta, generator))

@@ -10,12 +10,12 @@ from dataclasses import dataclass, field
 import numpy as np
 import torch
 from jaxtyping import Float
-from torch import Tensor, nn
+from torch import Tensor
 
 from .. import rollout
 from ..beyond.footholds import FootholdConfig, FootholdMoDiff
 from ..conditions.control import as_long
-from ..ddpm import Denoiser, Generators, Schedule, ddim_steps, draw, final, sample_steps
+from ..ddpm import Denoiser, Generators, ddim_steps, draw, final, sample_steps
 from ..modiff import MoDiff, MoDiffConfig
 from ..motion.check import lies_down
 from ..motion.checks import checked_samples, checked_seconds, checked_steps
@@ -25,7 +25,7 @@ from ..motion.scaler import Scaler
 from ..motion.skeleton import J
 from ..rollout import WindowSampler
 from .joined import Start, change_of, in_words, joined, leg_size, resized, unlike_training
-from .networks import register
+from .networks import WalkerConfig, WalkerNetwork, register
 from .performer import Performer, bar, generators
 
 STEPS = 10  # default of DDIM: as good as DDPM with all steps, and ten times as fast (RESULTS)
@@ -43,11 +43,14 @@ class Walker(Performer):
     Source: MoDiff III.  Notebook: 07
     """
 
-    model: nn.Module
-    schedule: Schedule
+    model: WalkerNetwork
     pose_scaler: Scaler
     control_scaler: Scaler
     card: dict = field(default_factory=dict)
+
+    @property
+    def config(self) -> WalkerConfig:
+        return self.model.config
 
     def walk(
         self,
@@ -127,7 +130,7 @@ class Walker(Performer):
 
         Past and control are encoded here, once; each call decodes.
         """
-        return self._denoiser(self.model.decode, self._encoded(self.model, past, control))
+        return self._denoiser(self.model.decode, self._encoded(self.model.encode, past, control))
 
     def window_sampler(self, steps: int | None = None) -> WindowSampler:
         """A function that draws a window of T_p poses: DDPM with all steps, or DDIM with `steps`.

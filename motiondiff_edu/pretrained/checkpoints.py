@@ -10,13 +10,13 @@ from dataclasses import MISSING, asdict, dataclass
 from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
+from typing import Generic, TypeVar
 
 import torch
 from safetensors import safe_open
 from torch import Tensor, nn
 
 from ..baselines import (  # noqa: F401  they register their networks
-    hearing_transformer,
     text,
     transformer,
 )
@@ -29,6 +29,7 @@ from ..performers.dancer import Dancer
 from ..performers.inbetweener import Inbetweener
 from ..performers.mover import Mover
 from ..performers.networks import kind_of, networks_of
+from ..performers.performer import Performer
 from ..performers.walker import Walker
 from .weights_file import (
     CheckpointError,
@@ -53,10 +54,12 @@ __all__ = [
 
 FOLDER = Path(__file__).parent
 AnyPerformer = Walker | Dancer | Mover | Inbetweener
+P = TypeVar("P", bound=Performer, covariant=True)
+Model = TypeVar("Model", bound=nn.Module)
 
 
 @dataclass(frozen=True)
-class Kind:
+class Kind(Generic[P]):
     """A performer in files.
 
     Its name, its format there, its class, its scalers with the width of each ("D" or "C" of the
@@ -65,7 +68,7 @@ class Kind:
 
     name: str
     format: str
-    performer: type
+    performer: type[P]
     scalers: dict[str, str]
     usual: str
 
@@ -76,7 +79,7 @@ MOVER = Kind("mover", "motiondiff_edu mover 1", Mover, {"motion": "D"}, "TextMoF
 INBETWEENER = Kind(
     "inbetweener", "motiondiff_edu inbetweener 1", Inbetweener, {"motion": "D"}, "KeyframeMoFusion"
 )
-KINDS = (WALKER, DANCER, MOVER, INBETWEENER)
+KINDS: tuple[Kind[AnyPerformer], ...] = (WALKER, DANCER, MOVER, INBETWEENER)
 STORED = {8: pack, 16: halved, 32: dict}
 
 
@@ -159,16 +162,16 @@ def load_dancer(path: str | Path) -> Dancer:
     return _read(path, DANCER)
 
 
-def _read(path: str | Path, *kinds: Kind, clip: Clip | str | Path | None = None) -> AnyPerformer:
+def _read(path: str | Path, *kinds: Kind[P], clip: Clip | str | Path | None = None) -> P:
     return read_weights(path, {kind.format: partial(_assembled, kind, clip=clip) for kind in kinds})
 
 
 def _assembled(
-    kind: Kind,
+    kind: Kind[P],
     tensors: dict[str, Tensor],
     metadata: dict[str, str],
     clip: Clip | str | Path | None = None,
-) -> AnyPerformer:
+) -> P:
     networks = networks_of(kind.name)
     config = config_of(metadata, {name: one.config for name, one in networks.items()}, kind.usual)
     sizes = {name: getattr(config, width) for name, width in kind.scalers.items()}
@@ -179,14 +182,15 @@ def _assembled(
     weights = weights_of(tensors)
     refuse_other_shapes(build, weights)
     schedule = make_schedule(tensors["schedule.beta"], metadata["schedule"])
+    perform: Callable[..., P] = kind.performer  # each takes its own scalers
     trained = (with_weights(build(), weights), schedule, *scalers, card_of(metadata))
     name = getattr(config, "clip", "")
     if not name and clip is None:
-        return kind.performer(*trained)
+        return perform(*trained)
     if not name:
         raise CheckpointError(f"{metadata['file']} does not read by CLIP: leave `clip` out")
     try:
-        return Mover(*trained, clip if isinstance(clip, Clip) else load_clip(clip or name))
+        return perform(*trained, clip if isinstance(clip, Clip) else load_clip(clip or name))
     except ClipError as error:
         raise CheckpointError(
             f"{metadata['file']} reads texts by {name}, or by its folder in `clip`: {error}"
@@ -211,7 +215,7 @@ def refuse_other_shapes(build: Callable[[], nn.Module], weights: dict[str, Tenso
             raise ValueError(f"{name} has the shape {given}; the network has {own}")
 
 
-def with_weights(model: nn.Module, weights: dict[str, Tensor]) -> nn.Module:
+def with_weights(model: Model, weights: dict[str, Tensor]) -> Model:
     """The network with these weights, in evaluation mode and without gradients."""
     model.load_state_dict(weights)
     return model.eval().requires_grad_(False)

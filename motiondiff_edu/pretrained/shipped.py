@@ -26,6 +26,7 @@ from ..performers.mover import LONGEST, SHORTEST, Mover
 from ..performers.performer import bar, generators
 from ..performers.walker import Walker
 from . import checkpoints
+from .checkpoints import AnyPerformer, P
 
 
 def inbetween(
@@ -51,7 +52,7 @@ def inbetween(
     """
     known, count = _fitting(motion, known), checked_samples(samples)
     checked_seed(seed)
-    inbetweener = _shipped("inbetweener")
+    inbetweener = _shipped(Inbetweener)
     steps = min(checked_count(steps, "steps"), inbetweener.schedule.S)
     if known.all():
         raise MotionError(f"{motion.name}: every joint is known, so there is nothing to generate")
@@ -97,7 +98,7 @@ def reconstruct(
     """
     known, count = _fitting(motion, known), checked_samples(samples)
     checked_seed(seed)
-    walker, draws = _shipped("walker"), generators(seed, count)
+    walker, draws = _shipped(Walker), generators(seed, count)
     watch = bar("reconstructing", reconstruction.ROUNDS, progress)
     made = [
         reconstruction.reconstruct(walker, motion.positions, known, generator=draw, watch=watch)
@@ -150,7 +151,7 @@ def edit(
     count = checked_samples(samples)
     checked_seed(seed)
     checked_strength(strength)
-    mover = _shipped("mover")
+    mover = _shipped(Mover)
     for note in mover.reader.read(text).notes:
         warnings.warn(note, MotionWarning, stacklevel=2)
     made = by_words.edit_by_words(
@@ -176,8 +177,15 @@ def edit(
     return made if samples > 1 else made[0]
 
 
+def _shipped(kind: type[P]) -> P:
+    """The shipped performer of the usual name."""
+    made = _loaded(kind.__name__.lower())
+    assert isinstance(made, kind)
+    return made
+
+
 @lru_cache(maxsize=4)
-def _shipped(name: str) -> Walker | Mover | Inbetweener:
+def _loaded(name: str) -> AnyPerformer:
     return checkpoints.pretrained(name)
 
 

@@ -17,7 +17,7 @@ import os
 from collections.abc import Callable, Mapping
 from dataclasses import fields
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import torch
 from safetensors import SafetensorError, safe_open
@@ -25,11 +25,12 @@ from safetensors.torch import save_file
 from torch import Tensor
 
 from .._files import digest_of_tensors, digest_of_texts, replacing
+from ..performers.networks import Config
 
 # ---- files ---------------------------------------------------------------------------------------
-Config = TypeVar("Config")
+Read = TypeVar("Read")  # the object that a file describes
 # (tensors, metadata) -> the object that they describe
-Assemble = Callable[[dict[str, Tensor], dict[str, str]], object]
+Assemble = Callable[[dict[str, Tensor], dict[str, str]], Read]
 # settings of earlier versions; with this value they had no effect and are ignored
 RETIRED = {"reach": 0.0}
 LARGEST = 10_000  # of a whole number among the settings: widths, steps, frames
@@ -58,7 +59,7 @@ def write_weights(
     return path
 
 
-def read_weights(path: str | Path, kinds: Mapping[str, Assemble]) -> object:
+def read_weights(path: str | Path, kinds: Mapping[str, Assemble[Read]]) -> Read:
     """Read and check a file, and return kinds[format](tensors, metadata).
 
     `kinds` has a function for each format that is accepted.
@@ -94,7 +95,7 @@ def read_weights(path: str | Path, kinds: Mapping[str, Assemble]) -> object:
         ) from error
 
 
-def config_of(metadata: dict[str, str], kinds: Mapping[str, type[Config]], default: str) -> Config:
+def config_of(metadata: dict[str, str], kinds: Mapping[str, type], default: str) -> Config:
     """The configuration; every setting must be known and have the type of its default.
 
     Whole numbers are at most LARGEST, so that a false one does not fill the memory.
@@ -115,7 +116,7 @@ def config_of(metadata: dict[str, str], kinds: Mapping[str, type[Config]], defau
             "first (performers.networks.register)"
         )
     values = {k: v for k, v in values.items() if k not in RETIRED or v != RETIRED[k]}
-    defaults = {field.name: field.default for field in fields(kind)}
+    defaults: dict[str, Any] = {field.name: field.default for field in fields(kind)}
     unknown = set(values) - set(defaults)
     if unknown:
         raise CheckpointError(

@@ -6,7 +6,7 @@ Notebook: 13
 
 from dataclasses import dataclass, replace
 
-from ..baselines.hearing_transformer import HearingTransformerConfig
+from ..baselines.transformer import HearingTransformerConfig
 from ..kinematic_loss import KinematicWeights
 from ..mofusion import MOFUSION_FULL, MOFUSION_SMALL
 from ..performers.hearing_mofusion import HearingConfig

@@ -12,8 +12,11 @@ from synthetic_dance import windows
 from torch import nn
 
 from motiondiff_edu import ddpm
-from motiondiff_edu.baselines.regression import regression_loss
-from motiondiff_edu.baselines.transformer import DanceTransformer, TransformerConfig
+from motiondiff_edu.baselines.transformer import (
+    DanceTransformer,
+    TransformerConfig,
+    regression_loss,
+)
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
 from motiondiff_edu.motion.dance_frame import to_positions
