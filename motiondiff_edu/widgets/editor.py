@@ -19,15 +19,14 @@ from jaxtyping import Bool, Float
 from numpy.typing import ArrayLike
 
 from ..editing.edit import Edit, Made, Make, drag_in_words, make_between
-from ..motion import recordings
 from ..motion.formats.bvh.fit import FitReport
 from ..motion.formats.bvh.write import write_bvh
-from ..motion.motion import check_no_recording
+from ..motion.recordings import recordings
 from ..motion.skeleton import JOINTS, J, joint_index
 from . import editor_page, packing
 from .editor_page import MODULE, MOST, complaint, listed
+from .live import TURN
 from .still import page_on_picture, with_still
-from .turn import TURN
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,11 +202,8 @@ class Editor(anywidget.AnyWidget):
         `read_motion` has read, unless `overwrite`.
         """
         path = Path(path).expanduser()
-        if not overwrite:
-            check_no_recording(path)
-        report = write_bvh(path, self._shown(), self._fps)
-        recordings.note_written(path)
-        return report
+        with recordings.writing(path, overwrite):
+            return write_bvh(path, self._shown(), self._fps)
 
     def _receive(self, _, content: dict, buffers) -> None:
         if content["do"] == "ping":  # the page only tests whether the kernel answers

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..editing.edit import KEPT, Edit, Made
 from ..editing.masks import body_part
-from ..motion import recordings
+from ..motion.recordings import recordings
 from ..motion.skeleton import J, joint_index
 from ..viz import body
 from . import module, poster
@@ -132,7 +132,7 @@ def save_as(editor, name: str) -> str:
     path = Path(file_of(name))
     ours = recordings.is_ours(path)
     if path.exists() and not ours:
-        why = "was read" if recordings.is_recording(path) else "is from before this kernel"
+        why = "was read" if path in recordings else "is from before this kernel"
         raise ValueError(
             f"not saved: {path} {why}, and it would be lost. Type another name, for instance "
             f"{free_name(path)}"
