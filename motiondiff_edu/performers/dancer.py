@@ -182,33 +182,8 @@ class Dancer(Performer):
         longest = None if seconds is None else round(checked_seconds(seconds) * SAMPLE_RATE)
         audio = samples_of(sound, sample_rate)[:longest]
         name = Path(sound).stem if isinstance(sound, (str, Path)) else "the sound given"
-        lasts = len(audio) / SAMPLE_RATE
-        frames = int(lasts * FPS)
-        if lasts < SHORTEST:
-            raise ValueError(
-                f"{lasts:.3f} s of sound are too short: at least {SHORTEST} s are needed"
-            )
-        if seconds is not None and lasts < seconds - 1 / FPS:
-            warnings.warn(
-                f"{name} lasts {lasts:.1f} s, and the dance ends with it",
-                MotionWarning,
-                stacklevel=2,
-            )
-        heard, peak = audio, float(audio.abs().max())
-        if peak < SILENT:
-            raise AudioError(
-                f"{name} is silent in its first {lasts:.1f} s, so there is nothing to dance to: "
-                "use more seconds of it"
-            )
-        if peak < QUIET:
-            warnings.warn(
-                f"{name} is very quiet (its loudest sample is {peak:.1g} of the largest there is), "
-                "so it is danced to as if it were louder",
-                MotionWarning,
-                stacklevel=2,
-            )
-            heard = audio * LOUD / peak
-        mel = log_mel(heard, SAMPLE_RATE)
+        frames = int(len(audio) / SAMPLE_RATE * FPS)
+        mel = log_mel(audible(audio, name, seconds), SAMPLE_RATE)
         draws = generators(seed, count, *fingerprint(mel))
         dances = self.dance_mel(
             mel.expand(count, -1, -1),
@@ -273,6 +248,36 @@ class Dancer(Performer):
         with evaluating(self.model):
             out = self.model(nothing, s, self.model.listen(*self.mel_input(mel, frames)))
         return to_positions(self.motion_scaler.inverse(out))
+
+
+def audible(
+    audio: Float[Tensor, "N"], name: str, seconds: float | None = None
+) -> Float[Tensor, "N"]:
+    """A sound as it is danced to: a very quiet one is made louder, with a MotionWarning.
+
+    Another one says where it is shorter than `seconds`.
+    Raises AudioError for silence, ValueError for a sound that is too short for a motion.
+    """
+    lasts, peak = len(audio) / SAMPLE_RATE, float(audio.abs().max())
+    if lasts < SHORTEST:
+        raise ValueError(f"{lasts:.3f} s of sound are too short: at least {SHORTEST} s are needed")
+    if peak < SILENT:
+        raise AudioError(
+            f"{name} is silent in its first {lasts:.1f} s, so there is nothing to dance to: "
+            "use more seconds of it"
+        )
+    notes = []
+    if seconds is not None and lasts < seconds - 1 / FPS:
+        notes.append(f"{name} lasts {lasts:.1f} s, and the dance ends with it")
+    if peak < QUIET:
+        notes.append(
+            f"{name} is very quiet (its loudest sample is {peak:.1g} of the largest there is), "
+            "so it is danced to as if it were louder"
+        )
+        audio = audio * LOUD / peak
+    for note in notes:
+        warnings.warn(note, MotionWarning, stacklevel=3)
+    return audio
 
 
 def checked_frames(mel: Float[Tensor, "B M C"], frames: int | None) -> int:

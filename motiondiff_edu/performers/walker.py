@@ -107,14 +107,19 @@ class Walker(Performer):
         loop = bar("walking", len(ahead), progress)(loop)
         new = self.pose_scaler.inverse(torch.stack([frame.pose for frame in loop], dim=1))
         both = [joined(start, one) for one in new.double().cpu().numpy().reshape(count, -1, J, 3)]
-        unlike, height = unlike_training(self.pose_scaler, past), motion.positions[-1, :, 1].min()
-        change = change_of(start.control[T_h - 2 :])
-        words = in_words(max(jump for _, jump in both), unlike, height, change, size)
-        if words:
+        if words := self._doubts(start, max(jump for _, jump in both), size):
             warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
         path, name = start.path[T_h:], f"{motion.name}, continued"
         made = [resized(Motion(world, FPS, root=path, source=name), size) for world, _ in both]
         return made if samples > 1 else made[0]
+
+    def _doubts(self, start: Start, jump: float, size: float) -> str:
+        """What there is to say about a continuation of a figure of this size (`in_words`)."""
+        past = torch.from_numpy(start.past).float().flatten(1)
+        unlike = unlike_training(self.pose_scaler, past)
+        height = size * start.given[-1, :, 1].min()
+        change = change_of(start.control[len(past) - 2 :])
+        return in_words(jump, unlike, height, change, size)
 
     def _in_units(
         self, past: Float[Tensor, "T_h D"], control: Float[Tensor, "T C"], samples: int

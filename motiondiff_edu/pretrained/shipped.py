@@ -162,19 +162,25 @@ def edit(
     kept = nothing if mask is None else mask
     body, floor = Body.of(motion.positions), floor_under(motion.positions)
     made = [clean_up(one, FPS, kept, body=body, floor=floor) for one in made]
+    _warn_of_glides(motion, made)
+    made = [_made(motion, nothing, positions, f"edited: {text.strip():.40}") for positions in made]
+    return made if samples > 1 else made[0]
+
+
+def _warn_of_glides(motion: Motion, made: list[Float[np.ndarray, "T 21 3"]]) -> None:
+    """A MotionWarning where the feet of an edited motion slide, and did not before."""
+    nothing = np.zeros((len(motion), len(motion.skeleton)), bool)
     glides = [glide for one in made if any(glide := longest_glide(one, nothing))]
     if glides and not any(longest_glide(motion.positions, nothing)):
-        which = f" ({len(glides)} of {count} samples)" if count > 1 else ""
+        which = f" ({len(glides)} of {len(made)} samples)" if len(made) > 1 else ""
         first, last = glides[0]
         warnings.warn(
             f"{motion.name}{which}: both feet slide between frames {first} and {last}. The "
             "sentence must say what the legs do as well, such as 'walks forward while waving', and "
             "match the joints that are kept",
             MotionWarning,
-            stacklevel=2,
+            stacklevel=3,
         )
-    made = [_made(motion, nothing, positions, f"edited: {text.strip():.40}") for positions in made]
-    return made if samples > 1 else made[0]
 
 
 def _shipped(kind: type[P]) -> P:
