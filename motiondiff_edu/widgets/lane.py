@@ -7,9 +7,8 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from ..viz import body
-from .listening import Listening
+from .listening import Listening, Strips
 from .sound import Sound, as_sound, as_times, peaks
-from .strips import Strips
 
 PURPLE, GREEN = "#CC79A7", "#009E73"
 # pixels
