@@ -11,7 +11,7 @@ Source: MoFusion 3.1-3.3, Fig. 3.  Notebook: 12
 """
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from itertools import pairwise
 
 import torch
@@ -71,9 +71,6 @@ class MoFusionConfig:
     def context_width(self) -> int:
         """Of the music's tokens: that of the second level, where there are two."""
         return self.widths[:2][-1]
-
-    def as_dict(self) -> dict:
-        return asdict(self)
 
 
 MOFUSION_FULL = MoFusionConfig(widths=(256, 512, 1024), heads=8)

@@ -5,6 +5,7 @@ Eq. 12's mean and variance, its rate, who is hit, and the schedule of rates.
 
 import pytest
 import torch
+from seeds import seeded
 
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.diffusion_dropout import (
@@ -17,10 +18,6 @@ from motiondiff_edu.diffusion_dropout import (
 )
 
 SCHEDULE = linear_schedule(100)
-
-
-def seeded(seed: int = 0) -> torch.Generator:
-    return torch.Generator().manual_seed(seed)
 
 
 def test_rate_zero_is_the_identity_and_rate_one_is_equation_12():

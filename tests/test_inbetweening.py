@@ -5,6 +5,7 @@ What is given comes back, what is not follows the true conditional once it is re
 
 import pytest
 import torch
+from seeds import seeded
 from two_numbers import correlated, given_first
 
 from data_synth.mixtures import crossed_bars
@@ -14,10 +15,6 @@ from motiondiff_edu.exact import conditional, exact_denoiser, log_density, sampl
 from motiondiff_edu.inbetweening import inpaint_steps, resampled
 
 SCHEDULE = cosine_schedule(100)
-
-
-def seeded(seed: int = 0) -> torch.Generator:
-    return torch.Generator().manual_seed(seed)
 
 
 def last(loop):

@@ -6,7 +6,7 @@ Source: AI Choreographer's cross-modal transformer (cited by MoFusion 4.1), made
 are ours.
 """
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import torch
 from jaxtyping import Bool, Float, Int
@@ -52,9 +52,6 @@ class TransformerConfig:
             )
         if self.target not in TARGETS:
             raise ValueError(f"target must be one of {', '.join(TARGETS)}, not {self.target!r}")
-
-    def as_dict(self) -> dict:
-        return asdict(self)
 
 
 class Layer(nn.Module):
@@ -162,9 +159,8 @@ def regression_loss(
     """Mean squared error of the motion itself, from no noise at step 0: a regression's loss.
 
     The same song then gives the same dance, the mean of all its possible dances. A mean of dances
-    hardly moves.
+    hardly moves. AI Choreographer, with which MoFusion is compared, is trained so.
     mel_times  seconds of each row of the log-Mel spectrogram
-    Source: the idea of AI Choreographer, a baseline in MoFusion's Table 1.  Notebook: 14
     """
     s = torch.zeros(len(x0), dtype=torch.long, device=x0.device)
     out = model(torch.zeros_like(x0), s, model.listen(mel, mel_times))

@@ -9,7 +9,7 @@ Ours; see `beyond.hearing`.  Notebook: 12
 
 import copy
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import torch
@@ -48,9 +48,6 @@ class EarConfig:
             raise ValueError(
                 f"the width must be a multiple of 2 x {self.heads} heads, not {self.width}"
             )
-
-    def as_dict(self) -> dict:
-        return asdict(self)
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,8 +6,9 @@ from functools import partial
 import numpy as np
 import pytest
 import torch
+from seeds import seeded
 from small_dancers import dancer_of_bands as dancer
-from walked_clips import clip, seeded
+from walked_clips import clip
 
 from data_synth.walking import walk
 from motiondiff_edu.ddpm import ddim_steps, final, timesteps
