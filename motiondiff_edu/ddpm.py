@@ -254,7 +254,7 @@ class Step:
         now = self.schedule.at(self.s, self.x_s)
         return (self.x_s - now.noise * self.eps_hat) / now.signal
 
-    def clamped(self, clip: float) -> "Step":
+    def clamp_x0(self, clip: float) -> "Step":
         """The step whose x0_hat is clamped to -clip..clip, with its eps_hat; s is at least 1."""
         now = self.schedule.at(self.s, self.x_s, first=1)
         x0_hat = self.x0_hat.clamp(-clip, clip)
@@ -320,7 +320,7 @@ def sample_steps(
 def _denoised(denoise: Denoiser, s: int, x_s: X, schedule: Schedule, clip: float | None) -> Step:
     """The step s from x_s, at which the whole batch is."""
     step = Step(s, x_s, denoise(x_s, torch.full((len(x_s),), s, device=x_s.device)), schedule)
-    return step if clip is None else step.clamped(clip)
+    return step if clip is None else step.clamp_x0(clip)
 
 
 def timesteps(S: int, steps: int) -> list[int]:
@@ -334,7 +334,7 @@ def timesteps(S: int, steps: int) -> list[int]:
     return [S - (i * S) // steps for i in range(steps)]
 
 
-def falling(steps: int | Sequence[int], S: int) -> list[int]:
+def visited_steps(steps: int | Sequence[int], S: int) -> list[int]:
     """The steps that a sampler visits: `timesteps(S, steps)`, or those of a list.
 
     Raises ValueError for steps that do not decrease, or are outside 1..S.
@@ -405,7 +405,7 @@ def ddim_steps(
     Raises ValueError for steps that do not decrease or are outside 1..S, and for eta outside 0..1.
     Notebook: 03
     """
-    visited = falling(steps, schedule.S)
+    visited = visited_steps(steps, schedule.S)
     x_s = starting_noise(start, generator)
     for s, after in zip(visited, [*visited[1:], 0], strict=True):
         sigma = ddim_sigma(s, after, schedule, eta)

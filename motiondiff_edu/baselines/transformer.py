@@ -147,7 +147,7 @@ class HearingTransformer(WithEar, DanceTransformer):
         self.with_ear(config.ear, config.width)
 
     def listen(self, mel: Tensor, times: Tensor, mask: Tensor | None = None) -> Music:
-        return self.heard(super().listen(mel, times, mask), mel, times, mask)
+        return self.add_ear(super().listen(mel, times, mask), mel, times, mask)
 
 
 def regression_loss(

@@ -19,7 +19,7 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor, nn
 
-from ..diffusion_dropout import changed
+from ..diffusion_dropout import changed_samples
 from ..modiff import Memory, MoDiff, MoDiffConfig
 from ..motion.scaler import Scaler
 from ..motion.skeleton import J, joint_index
@@ -185,7 +185,7 @@ class CleanFootholds:
         control: Float[Tensor, "B T C"],
     ) -> Float[Tensor, "B T_p D"]:
         standing = torch.lerp(self.clean, self.noised, self.foot_noise)[:, -1]
-        dropped = changed(self.noised, past)
+        dropped = changed_samples(self.noised, past)
         standing = past[:, -1].where(dropped[:, None], standing)
         return self.model.decode(x_s, s, self.model.encode(past, control, standing))
 

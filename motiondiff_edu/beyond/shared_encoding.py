@@ -17,7 +17,7 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor
 
-from ..diffusion_dropout import changed
+from ..diffusion_dropout import changed_samples
 
 
 def repeated(batch: tuple[Tensor, ...], noises: int) -> tuple[Tensor, ...]:
@@ -67,7 +67,7 @@ class SharedEncoding:
         unlike = torch.zeros(B, dtype=torch.bool)
         for part in inputs:
             again = part[first].repeat_interleave(self.noises, dim=0)
-            unlike |= changed(again, part).cpu()
+            unlike |= changed_samples(again, part).cpu()
         others = unlike.nonzero()[:, 0]
         row = torch.arange(B) // self.noises  # row of the memory for each copy
         row[others] = len(first) + torch.arange(len(others))

@@ -24,7 +24,7 @@ from ..motion.directions import ARMS, UPLEGS
 from ..motion.motion import MotionError, MotionWarning
 from ..motion.root_frame import FPS, smoothed_root, to_root_frame, to_world
 from ..motion.skeleton import HIPS, JOINTS, J
-from ..performers.joined import farthest, unlike_training
+from ..performers.continuation import farthest, unlike_training
 from ..reconstruction import Rollout, Stop
 from ..rollout import SLACK, AnyWalker, Units
 

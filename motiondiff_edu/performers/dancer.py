@@ -33,7 +33,7 @@ from ..motion.retarget import SHORTEST
 from ..motion.scaler import Scaler
 from .dance_windows import FPS, mel_frames
 from .networks import DancerNetwork, register
-from .performer import Performer, Watch, bar, evaluating, generators, sampled
+from .performer import Performer, Watch, bar, evaluating, generators, sample_motion
 
 STEPS, ETA = 50, 1.0  # defaults of DDIM; with less fresh noise, dances to a song differ less
 # chosen on other songs than those of docs/RESULTS.md
@@ -238,7 +238,7 @@ class Dancer(Performer):
         denoise = self.denoiser(mel, frames, guidance)
         where = self.motion_scaler.mean.new_empty(len(mel), frames, self.config.D)
         x_S = draw(where, generator) if start is None else start.to(self.device)
-        x0 = sampled(denoise, x_S, self.schedule, steps, eta, generator, watch)
+        x0 = sample_motion(denoise, x_S, self.schedule, steps, eta, generator, watch)
         return to_positions(self.motion_scaler.inverse(x0))
 
     def _regress(self, mel: Float[Tensor, "B M C"], frames: int) -> Float[Tensor, "B T 21 3"]:

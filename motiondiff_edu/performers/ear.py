@@ -134,7 +134,7 @@ def in_parts(
     return torch.cat(made, 1)
 
 
-def rescaled(ear: Ear, own: Scaler, other: Scaler) -> Ear:
+def rescale_ear(ear: Ear, own: Scaler, other: Scaler) -> Ear:
     """An ear made for Mel frames standardised by `own` as one for frames standardised by `other`.
 
     Both hear the same: its first layer is linear, and so is the change of units.

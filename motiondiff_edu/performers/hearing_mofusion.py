@@ -56,7 +56,7 @@ class WithEar:
         self.ear = Ear(config).requires_grad_(False)
         self.from_ear = nn.Linear(config.width, width)
 
-    def heard(
+    def add_ear(
         self,
         music: Music,
         mel: Float[Tensor, "B M C"],
@@ -77,7 +77,7 @@ class HearingMoFusion(WithEar, MoFusion):
         self.with_ear(config.ear, config.context_width)
 
     def listen(self, mel: Tensor, times: Tensor, mask: Tensor | None = None) -> Music:
-        return self.heard(super().listen(mel, times, mask), mel, times, mask)
+        return self.add_ear(super().listen(mel, times, mask), mel, times, mask)
 
 
 register("dancer", HearingMoFusion, HearingConfig)

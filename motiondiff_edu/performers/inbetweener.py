@@ -127,7 +127,7 @@ class Inbetweener(Performer):
         motion. The motion may be anywhere and face anywhere: the network sees it from its first
         known pose.
 
-        steps     of DDIM: how many, or which to visit (`inbetweening.resampled`)
+        steps     of DDIM: how many, or which to visit (`inbetweening.resampling_steps`)
         remainder factor on what the network adds to the lines; with 0 the result is the lines
         generator without one, the seed is 0
         watch     gets the sampling loop, and shows how far it is

@@ -14,7 +14,7 @@ from torch import Tensor
 
 from ..beyond import timeline
 from ..beyond.classifier_free import guided_by_condition
-from ..conditions.clip import Clip, check
+from ..conditions.clip import ClipModel, check
 from ..conditions.text import Read
 from ..conditions.word_encoder import WordReader
 from ..ddpm import Denoiser, Generators, draw
@@ -33,7 +33,7 @@ from ..motion.scaler import Scaler
 from ..motion.skeleton import BONE_LENGTHS
 from .described_windows import GRID
 from .networks import MoverConfig, MoverNetwork
-from .performer import Performer, Watch, bar, evaluating, generators, sampled
+from .performer import Performer, Watch, bar, evaluating, generators, sample_motion
 from .planned_mofusion import PlannedMoFusion
 from .text_mofusion import TextMoFusionConfig, Texts
 
@@ -63,7 +63,7 @@ class Mover(Performer):
     model: MoverNetwork
     motion_scaler: Scaler
     card: dict = field(default_factory=dict)
-    clip: Clip | None = None
+    clip: ClipModel | None = None
 
     def __post_init__(self):
         super().__post_init__()
@@ -85,7 +85,7 @@ class Mover(Performer):
         return self.motion_scaler.mean.device
 
     @property
-    def reader(self) -> WordReader | Clip:
+    def reader(self) -> WordReader | ClipModel:
         """How this network reads: `read(text)`, and `encoded(...)` for what the network takes."""
         return self.clip or WordReader(self.config.words)
 
@@ -174,7 +174,7 @@ class Mover(Performer):
         """
         denoise = self.plan_denoiser(ids, frames, guidance)
         x_S = self._noise((len(ids), frames, timeline.D), generator, start)
-        made = sampled(denoise, x_S, self.schedule, steps, eta, generator, watch)
+        made = sample_motion(denoise, x_S, self.schedule, steps, eta, generator, watch)
         return timeline.tidied(self.plan_scaler.inverse(made))
 
     def act(
@@ -223,7 +223,9 @@ class Mover(Performer):
             )
         denoise = self.denoiser(ids, whole, guidance, plan)
         x_S = self._noise((count, whole, D), draws, None)
-        made = self.positions_of(sampled(denoise, x_S, self.schedule, steps, ETA, draws, watch))
+        made = self.positions_of(
+            sample_motion(denoise, x_S, self.schedule, steps, ETA, draws, watch)
+        )
         source = f"{found.text:.60}"
         acts = made.double().cpu().numpy()
         clean = [clean_up(x, FPS, body=Body.of(x, bones=BONE_LENGTHS)) for x in acts]
@@ -256,7 +258,7 @@ class Mover(Performer):
             )
         denoise = self.denoiser(ids, frames, guidance, plan)
         x_S = self._noise((len(ids), frames, D), generator, start)
-        return self.positions_of(sampled(denoise, x_S, self.schedule, steps, eta, generator))
+        return self.positions_of(sample_motion(denoise, x_S, self.schedule, steps, eta, generator))
 
     def _noise(
         self, shape: tuple[int, ...], generator: Generators | None, start: Tensor | None

@@ -68,8 +68,8 @@ class MoverConfig(Config, Protocol):
 
 
 @runtime_checkable
-class Module(Protocol):
-    """What performers use of torch's nn.Module."""
+class AnyNetwork(Protocol):
+    """A network with its configuration, and what performers use of torch's nn.Module."""
 
     training: bool
 
@@ -84,11 +84,6 @@ class Module(Protocol):
     def state_dict(self) -> dict[str, Any]: ...
 
     def to(self, device: str | torch.device) -> Self: ...
-
-
-@runtime_checkable
-class AnyNetwork(Module, Protocol):
-    """A network with its configuration."""
 
     @property
     def config(self) -> Config: ...

@@ -17,7 +17,7 @@ from ..ddpm import Denoiser, Generators, Schedule, Step, ddim_steps, final, samp
 from ..motion.checks import checked_seed
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
-from .networks import AnyNetwork, Config, Module
+from .networks import AnyNetwork, Config
 
 Own = TypeVar("Own", bound="Performer")  # the class of a performer, or of one made of it
 Watch = Callable[[Iterable[Step]], Iterable[Step]]  # wraps a loop, as `bar` does
@@ -36,7 +36,7 @@ def generators(seed: int, count: int, *also: int) -> list[torch.Generator]:
     return [torch.Generator().manual_seed(one) for one in (seed, *further.tolist())]
 
 
-def sampled(
+def sample_motion(
     denoise: Denoiser,
     x_S: Float[Tensor, "B T D"],
     schedule: Schedule,
@@ -59,7 +59,7 @@ def sampled(
 
 
 @contextmanager
-def evaluating(model: Module) -> Iterator[None]:
+def evaluating(model: AnyNetwork) -> Iterator[None]:
     """The network without dropout; afterwards the parts that were in training mode are so again."""
     # not every time: a change visits every layer
     training = [part for part in model.modules() if part.training] if model.training else []

@@ -24,7 +24,15 @@ from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 from ..motion.skeleton import J
 from ..rollout import WindowSampler
-from .joined import Start, change_of, in_words, joined, leg_size, resized, unlike_training
+from .continuation import (
+    Start,
+    change_of,
+    finish_continuation,
+    in_words,
+    leg_size,
+    resize_motion,
+    unlike_training,
+)
 from .networks import WalkerConfig, WalkerNetwork, register
 from .performer import Performer, bar, generators
 
@@ -90,7 +98,7 @@ class Walker(Performer):
         size = leg_size(motion.positions)
         ahead = as_long(control, length, self.config.C)
         ahead[:, :2] /= size
-        start = Start.of(resized(motion.resampled(FPS), 1 / size), ahead[:, :3], T_h)
+        start = Start.of(resize_motion(motion.resampled(FPS), 1 / size), ahead[:, :3], T_h)
         own = np.concatenate([ahead[:1, 3:].repeat(T_h, axis=0), ahead[:, 3:]])
         past = torch.from_numpy(start.past).float().flatten(1)
         steer = torch.from_numpy(np.hstack([start.control, own])).float()
@@ -106,11 +114,16 @@ class Walker(Performer):
         )
         loop = bar("walking", len(ahead), progress)(loop)
         new = self.pose_scaler.inverse(torch.stack([frame.pose for frame in loop], dim=1))
-        both = [joined(start, one) for one in new.double().cpu().numpy().reshape(count, -1, J, 3)]
+        both = [
+            finish_continuation(start, one)
+            for one in new.double().cpu().numpy().reshape(count, -1, J, 3)
+        ]
         if words := self._doubts(start, max(jump for _, jump in both), size):
             warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
         path, name = start.path[T_h:], f"{motion.name}, continued"
-        made = [resized(Motion(world, FPS, root=path, source=name), size) for world, _ in both]
+        made = [
+            resize_motion(Motion(world, FPS, root=path, source=name), size) for world, _ in both
+        ]
         return made if samples > 1 else made[0]
 
     def _doubts(self, start: Start, jump: float, size: float) -> str:

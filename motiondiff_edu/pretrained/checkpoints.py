@@ -20,7 +20,7 @@ from ..baselines import (  # noqa: F401  they register their networks
     text,
     transformer,
 )
-from ..conditions.clip import Clip, ClipError
+from ..conditions.clip import ClipError, ClipModel
 from ..conditions.clip import load as load_clip
 from ..ddpm import make_schedule
 from ..motion.scaler import Scaler
@@ -35,9 +35,9 @@ from .weights_file import (
     CheckpointError,
     check_sizes,
     config_of,
-    halved,
     pack,
     read_weights,
+    to_float16,
     unpack,
     write_weights,
 )
@@ -80,7 +80,7 @@ INBETWEENER = Kind(
     "inbetweener", "motiondiff_edu inbetweener 1", Inbetweener, {"motion": "D"}, "KeyframeMoFusion"
 )
 KINDS: tuple[Kind[AnyPerformer], ...] = (WALKER, DANCER, MOVER, INBETWEENER)
-STORED = {8: pack, 16: halved, 32: dict}
+STORED = {8: pack, 16: to_float16, 32: dict}
 
 
 def save(figure: AnyPerformer, path: str | Path, bits: int = 16) -> Path:
@@ -134,7 +134,7 @@ def bits_of(path: str | Path) -> int:
     return 8 if "I8" in kinds else 16 if "F16" in kinds else 32
 
 
-def load(name: str | Path, clip: Clip | str | Path | None = None) -> AnyPerformer:
+def load(name: str | Path, clip: ClipModel | str | Path | None = None) -> AnyPerformer:
     """A performer: shipped weights by name ("walker", "dancer", "mover" ...), or your own file.
 
     `clip`: for your own mover that reads by CLIP, that CLIP or its folder; without it the CLIP is
@@ -162,7 +162,7 @@ def load_dancer(path: str | Path) -> Dancer:
     return _read(path, DANCER)
 
 
-def _read(path: str | Path, *kinds: Kind[P], clip: Clip | str | Path | None = None) -> P:
+def _read(path: str | Path, *kinds: Kind[P], clip: ClipModel | str | Path | None = None) -> P:
     return read_weights(path, {kind.format: partial(_assembled, kind, clip=clip) for kind in kinds})
 
 
@@ -170,7 +170,7 @@ def _assembled(
     kind: Kind[P],
     tensors: dict[str, Tensor],
     metadata: dict[str, str],
-    clip: Clip | str | Path | None = None,
+    clip: ClipModel | str | Path | None = None,
 ) -> P:
     networks = networks_of(kind.name)
     config = config_of(metadata, {name: one.config for name, one in networks.items()}, kind.usual)
@@ -190,7 +190,7 @@ def _assembled(
     if not name:
         raise CheckpointError(f"{metadata['file']} does not read by CLIP: leave `clip` out")
     try:
-        return perform(*trained, clip if isinstance(clip, Clip) else load_clip(clip or name))
+        return perform(*trained, clip if isinstance(clip, ClipModel) else load_clip(clip or name))
     except ClipError as error:
         raise CheckpointError(
             f"{metadata['file']} reads texts by {name}, or by its folder in `clip`: {error}"

@@ -184,7 +184,7 @@ def _looks_like(metadata: dict[str, str], tensors: dict) -> str:
 SCALE = ".scale"
 
 
-def halved(weights: dict[str, Tensor]) -> dict[str, Tensor]:
+def to_float16(weights: dict[str, Tensor]) -> dict[str, Tensor]:
     """Weights as float16; whole numbers stay as they are.
 
     Raises ValueError for weights beyond float16, of which the largest is 65,504.
@@ -199,12 +199,12 @@ def halved(weights: dict[str, Tensor]) -> dict[str, Tensor]:
 def pack(tensors: dict[str, Tensor]) -> dict[str, Tensor]:
     """Each matrix as int8 with one scale per row (`name.scale`), each vector in float16.
 
-    Raises ValueError as `halved` does.
+    Raises ValueError as `to_float16` does.
     """
     packed = {}
     for name, weight in tensors.items():
         if weight.dim() < 2 or not weight.is_floating_point():
-            packed |= halved({name: weight})
+            packed |= to_float16({name: weight})
             continue
         scale = weight.float().flatten(1).abs().amax(1).clamp(min=1e-12) / 127
         rows = scale.view(-1, *[1] * (weight.dim() - 1))

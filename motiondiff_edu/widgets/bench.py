@@ -27,7 +27,7 @@ from .live import TURN, Starting
 from .player import PAGE
 from .still import page_on_picture, with_still
 
-MODULE = module.joined(module.BENCH)
+MODULE = module.es_module(module.BENCH)
 _BYTES = ("joints", "roots", "mended_joints", "mended_roots")
 HEIGHT = 320  # pixels
 GHOST = "#009E73"  # as in js/bench_paint.js

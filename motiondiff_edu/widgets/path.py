@@ -19,7 +19,7 @@ from . import module
 from .live import Starting
 from .still import with_still
 
-MODULE = module.joined(module.PATH)
+MODULE = module.es_module(module.PATH)
 
 
 class PathPad(Starting):

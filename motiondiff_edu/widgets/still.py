@@ -20,14 +20,14 @@ NARROWEST = "1 1 440px"  # equal shares of a row, from so many pixels on
 MimeBundle = dict | tuple[dict, dict] | None  # what a widget's `_repr_mimebundle_` returns
 
 
-def split(live: MimeBundle) -> tuple[dict, dict]:
+def bundle_and_metadata(live: MimeBundle) -> tuple[dict, dict]:
     """A widget's MIME bundle and its metadata, whichever of them it gave."""
     return live if isinstance(live, tuple) else (live or {}, {})
 
 
 def with_still(live: MimeBundle, still: dict[str, str]) -> tuple[dict, dict]:
     """The live widget, and MIME types that stand for it where it does not run."""
-    bundle, metadata = split(live)
+    bundle, metadata = bundle_and_metadata(live)
     return bundle | still, metadata
 
 
@@ -69,7 +69,7 @@ def stills(box: ipywidgets.Box) -> list[str]:
     """The HTML of all widgets in a box, and in the boxes in it, that have any."""
     found = []
     for child in box.children:
-        bundle, _ = split(child._repr_mimebundle_())
+        bundle, _ = bundle_and_metadata(child._repr_mimebundle_())
         if "text/html" in bundle:
             found.append(bundle["text/html"])
         elif isinstance(child, ipywidgets.Box):

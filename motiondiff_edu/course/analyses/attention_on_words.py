@@ -13,7 +13,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from ...conditions.clip import Clip
+from ...conditions.clip import ClipModel
 from ...cross_modal_attention import watch
 from ...ddpm import Denoiser, draw, q_sample
 from ...performers.mover import Mover
@@ -79,7 +79,7 @@ def attention_of_the_plan(
 
 def _read(mover: Mover, text: str, s: int) -> tuple[tuple[str, ...], Texts]:
     """The words of a text, and what the network takes of them, for step s."""
-    if isinstance(mover.reader, Clip):
+    if isinstance(mover.reader, ClipModel):
         raise ValueError("these maps are over words; this mover reads by CLIP")
     if not 1 <= s <= mover.schedule.S:
         raise ValueError(f"this mover's steps are 1 to {mover.schedule.S}, not {s}")

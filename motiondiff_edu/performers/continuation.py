@@ -73,20 +73,20 @@ class Start:
         return whole[len(self.past) :]
 
 
-def joined(
+def finish_continuation(
     start: Start, new: Float[np.ndarray, "T 21 3"]
 ) -> tuple[Float[np.ndarray, "T 21 3"], float]:
     """New frames in the world, and how much farther a joint stepped at the seam than beside it.
 
     The step is that of the network (m), before the clean-up.
     """
-    whole, known = placed(start, new)
+    whole, known = around_seam(start, new)
     k = len(whole) - len(new)
     jump = seam_step(whole, k) if 2 <= k < len(whole) - 1 else 0.0
     return clean_up(whole, FPS, known)[k:], jump
 
 
-def placed(
+def around_seam(
     start: Start, new: Float[np.ndarray, "T 21 3"]
 ) -> tuple[Float[np.ndarray, "T2 21 3"], Bool[np.ndarray, "T2 21"]]:
     """A second of what is given and all new frames, in the world, and which joints are given."""
@@ -177,7 +177,7 @@ def leg_size(positions: Float[np.ndarray, "T 21 3"]) -> float:
     return 1.0 if abs(size - 1) < SAME else size
 
 
-def resized(motion: Motion, factor: float) -> Motion:
+def resize_motion(motion: Motion, factor: float) -> Motion:
     """The motion with all lengths times `factor`: a figure of another size, and its path."""
     root = None if motion.root is None else motion.root * [factor, factor, 1.0]
     return replace(motion, positions=factor * motion.positions, root=root)
