@@ -13,7 +13,7 @@ import operator
 import warnings
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from numbers import Integral
 from typing import NamedTuple, SupportsIndex, TypeVar
@@ -71,10 +71,9 @@ class Schedule:
 
         Raises IndexError for a step below `first` or above S.
         """
+        s = checked_step(s, self.S, first)
         if not isinstance(s, Tensor):
-            return self._numbers[checked_step(s, self.S, first)]
-        for step in _range(s, first):
-            checked_step(step, self.S, first)
+            return self._numbers[s]
         rows = torch.stack(self._tables).to(x.device)[:, s].to(x)
         return StepNumbers(*rows.reshape(len(rows), -1, *[1] * (x.dim() - 1)).unbind())
 
@@ -109,11 +108,8 @@ def make_schedule(beta: Float[Tensor, "S"], name: str = "schedule") -> Schedule:
         )
     schedule = Schedule(beta, 1 - beta, torch.cumprod(1 - beta, 0), name)
     if schedule.signal_left > 0.1:
-        what = (
-            "Sampling starts from pure noise, which this schedule never reaches: "
-            "use more steps or larger betas."
-        )
-        warnings.warn(f"{schedule_card(schedule)} {what}", stacklevel=3)
+        why = "Sampling starts from pure noise, which it never reaches: use more or larger betas."
+        warnings.warn(f"{schedule_card(schedule)} {why}", stacklevel=3)
     return schedule
 
 
@@ -164,33 +160,26 @@ def schedule_card(schedule: Schedule) -> str:
 
 
 def at(table: Table, s: Steps, x: X, first: int = 0) -> Tensor:
-    """Look up table[s], shaped so that it multiplies x.
-
-    The step s is one number, or one for each sample of the batch.
+    """table[s], for one s or one for each sample of the batch, shaped so that it multiplies x.
 
     Raises IndexError for a step below `first` or beyond the table.
     """
-    if not isinstance(s, Tensor):
-        return table[checked_step(s, len(table) - 1, first)].to(x)
-    low, high = _range(s, first)
-    checked_step(low, len(table) - 1, first)
-    checked_step(high, len(table) - 1, first)
+    s = checked_step(s, len(table) - 1, first)
     return table.to(x.device)[s].to(x).reshape(-1, *[1] * (x.dim() - 1))
 
 
-def checked_step(s: SupportsIndex, S: int, first: int = 0) -> int:
-    """The step as a number.  Raises IndexError below `first` or above S."""
-    step = operator.index(s)
-    if not first <= step <= S:
-        raise IndexError(f"s = {step}: steps must be {first} to {S} here; 0 is clean data")
-    return step
-
-
-def _range(s: Int[Tensor, "B"], first: int) -> tuple[int, int]:
-    """The smallest and the largest step; `first` twice for no steps or a tensor without values."""
-    if not s.numel() or s.is_meta:
-        return first, first
-    return int(s.min()), int(s.max())
+def checked_step(s: Int[Tensor, "B"] | SupportsIndex, S: int, first: int = 0) -> Steps:
+    """The step, or those of a batch.  Raises IndexError for one below `first` or above S."""
+    if not isinstance(s, Tensor):
+        s = low = high = operator.index(s)
+    elif s.is_meta or not s.numel():  # there is no value to check
+        return s
+    else:
+        low, high = int(s.min()), int(s.max())
+    for step in (low, high):
+        if not first <= step <= S:
+            raise IndexError(f"s = {step}: steps must be {first} to {S} here; 0 is clean data")
+    return s
 
 
 def draw(
@@ -265,16 +254,11 @@ class Step:
         now = self.schedule.at(self.s, self.x_s)
         return (self.x_s - now.noise * self.eps_hat) / now.signal
 
-
-def p_variance(schedule: Schedule, variance: str = "beta") -> Table:
-    """Variance of p(x_{s-1} | x_s): beta_s, or the bound beta_tilde_s. Source: MoDiff eq. 3."""
-    return schedule.beta if _is_beta(variance) else posterior_variance(schedule)
-
-
-def _is_beta(variance: str) -> bool:
-    if variance not in ("beta", "posterior"):
-        raise ValueError(f'variance must be "beta" or "posterior", not {variance!r}')
-    return variance == "beta"
+    def clamp_x0(self, clip: float) -> "Step":
+        """The step whose x0_hat is clamped to -clip..clip, with its eps_hat; s is at least 1."""
+        now = self.schedule.at(self.s, self.x_s, first=1)
+        x0_hat = self.x0_hat.clamp(-clip, clip)
+        return replace(self, eps_hat=(self.x_s - now.signal * x0_hat) / now.noise)
 
 
 def p_mean(x_s: X, s: Steps, eps_hat: X, schedule: Schedule) -> X:
@@ -291,16 +275,20 @@ def p_sample(
 ) -> X:
     """x_{s-1} = p_mean + sigma_s noise; the last step, s = 1, adds none.
 
+    sigma_s^2 is beta_s, or with variance="posterior" its lower bound beta_tilde_s.
     Raises ValueError for an unknown variance, and for a step that lacks its noise.
-    Source: MoDiff eq. 11; MoFusion eq. 3.
+    Source: MoDiff eq. 3, 11; MoFusion eq. 3.
     """
+    now = schedule.at(s, x_s, first=1)
+    variances = {"beta": now.beta, "posterior": now.beta_tilde}
+    if variance not in variances:
+        raise ValueError(f'variance must be "beta" or "posterior", not {variance!r}')
     mean = p_mean(x_s, s, eps_hat, schedule)
-    now, beta = schedule.at(s, x_s), _is_beta(variance)
     if s == 1:
         return mean
     if noise is None:
         raise ValueError(f"step {s} adds noise: pass it as `noise`")
-    return mean + math.sqrt(now.beta if beta else now.beta_tilde) * noise
+    return mean + math.sqrt(variances[variance]) * noise
 
 
 @torch.no_grad()
@@ -322,27 +310,23 @@ def sample_steps(
     """
     x_s = starting_noise(start, generator)
     for s in range(schedule.S, 0, -1):
-        eps_hat = denoise(x_s, torch.full((len(x_s),), s, device=x_s.device))
-        if clip is not None:
-            eps_hat = clipped(x_s, s, eps_hat, schedule, clip)
-        yield Step(s, x_s, eps_hat, schedule)
+        step = _denoised(denoise, s, x_s, schedule, clip)
+        yield step
         z = None if s == 1 else draw(x_s, generator) if noise is None else noise[s - 1]
-        x_s = p_sample(x_s, s, eps_hat, schedule, z, variance)
+        x_s = p_sample(x_s, s, step.eps_hat, schedule, z, variance)
     yield Step(0, x_s, torch.zeros_like(x_s), schedule)
 
 
-def clipped(x_s: X, s: int, eps_hat: X, schedule: Schedule, clip: float) -> X:
-    """The eps_hat that belongs to an x0_hat within -clip..clip; s is at least 1."""
-    now = schedule.at(s, x_s, first=1)
-    x0_hat = ((x_s - now.noise * eps_hat) / now.signal).clamp(-clip, clip)
-    return (x_s - now.signal * x0_hat) / now.noise
+def _denoised(denoise: Denoiser, s: int, x_s: X, schedule: Schedule, clip: float | None) -> Step:
+    """The step s from x_s, at which the whole batch is."""
+    step = Step(s, x_s, denoise(x_s, torch.full((len(x_s),), s, device=x_s.device)), schedule)
+    return step if clip is None else step.clamp_x0(clip)
 
 
 def timesteps(S: int, steps: int) -> list[int]:
     """Choose `steps` of the S diffusion steps, evenly spaced, S first.
 
     For example, timesteps(100, 4) = [100, 75, 50, 25].
-
     Raises ValueError unless 1 <= steps <= S.  Notebook: 03
     """
     if not 1 <= steps <= S:
@@ -350,7 +334,7 @@ def timesteps(S: int, steps: int) -> list[int]:
     return [S - (i * S) // steps for i in range(steps)]
 
 
-def falling(steps: int | Sequence[int], S: int) -> list[int]:
+def visited_steps(steps: int | Sequence[int], S: int) -> list[int]:
     """The steps that a sampler visits: `timesteps(S, steps)`, or those of a list.
 
     Raises ValueError for steps that do not decrease, or are outside 1..S.
@@ -372,7 +356,8 @@ def ddim_sigma(s: int, after: int, schedule: Schedule, eta: float) -> float:
     """
     if not 0 <= eta <= 1:
         raise ValueError(f"eta must be between 0 (no noise) and 1 (as DDPM), not {eta}")
-    checked_step(after, checked_step(s, schedule.S, first=1) - 1)
+    checked_step(s, schedule.S, first=1)
+    checked_step(after, s - 1)
     now, then = (schedule.alpha_bar[step].item() for step in (s, after))
     return eta * math.sqrt((1 - then) / (1 - now) * (1 - now / then))
 
@@ -389,7 +374,6 @@ def ddim_step(
 
     x_after = sqrt(ab_after) x0_hat + sqrt(1 - ab_after - sigma^2) eps_hat + sigma noise.
     Raises ValueError for a sigma without noise, IndexError for a step outside 0..S.
-
     Source: DDIM (Song, Meng and Ermon, 2021).
     """
     then = schedule.at(after, x0_hat)
@@ -421,17 +405,14 @@ def ddim_steps(
     Raises ValueError for steps that do not decrease or are outside 1..S, and for eta outside 0..1.
     Notebook: 03
     """
-    visited = falling(steps, schedule.S)
+    visited = visited_steps(steps, schedule.S)
     x_s = starting_noise(start, generator)
     for s, after in zip(visited, [*visited[1:], 0], strict=True):
         sigma = ddim_sigma(s, after, schedule, eta)
-        eps_hat = denoise(x_s, torch.full((len(x_s),), s, device=x_s.device))
-        if clip is not None:
-            eps_hat = clipped(x_s, s, eps_hat, schedule, clip)
-        step = Step(s, x_s, eps_hat, schedule)
+        step = _denoised(denoise, s, x_s, schedule, clip)
         yield step
         z = None if not sigma else draw(x_s, generator) if noise is None else noise[s - 1]
-        x_s = ddim_step(step.x0_hat, eps_hat, after, schedule, sigma, z)
+        x_s = ddim_step(step.x0_hat, step.eps_hat, after, schedule, sigma, z)
     yield Step(0, x_s, torch.zeros_like(x_s), schedule)
 
 

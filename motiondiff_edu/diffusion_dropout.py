@@ -5,7 +5,7 @@ use the control.
     with probability p_d for each sample of the batch
 
 It is not nn.Dropout: nothing is set to zero, and nothing is rescaled. Two alternatives here do set
-to zero: `frame_dropout` and `zeroing`; `baselines.linear_dropout` has their exact effect.
+to zero: `frame_dropout` and `zero_past`; `baselines.linear_dropout` has their exact effect.
 Source: MoDiff III-D, eq. 12, Alg. 1.  Notebook: 09
 """
 
@@ -58,7 +58,7 @@ def frame_dropout(past: Past, rate: float, generator: torch.Generator | None = N
     return past.masked_fill(hit.view(*past.shape[:2], 1), 0.0)
 
 
-def zeroing(past: Past, rate: float, generator: torch.Generator | None = None) -> Past:
+def zero_past(past: Past, rate: float, generator: torch.Generator | None = None) -> Past:
     """The simplest alternative: the whole past of a sample becomes 0 with probability `rate`.
 
     Notebook: 09
@@ -73,7 +73,9 @@ def chosen(n: int, rate: float, generator: torch.Generator | None = None) -> Boo
     return torch.rand(n, generator=generator) < rate
 
 
-def changed(before: Float[Tensor, "B ..."], after: Float[Tensor, "B ..."]) -> Bool[Tensor, "B"]:
+def changed_samples(
+    before: Float[Tensor, "B ..."], after: Float[Tensor, "B ..."]
+) -> Bool[Tensor, "B"]:
     """Which samples of a batch a dropout has changed."""
     return (before != after).flatten(1).any(1)
 

@@ -65,7 +65,7 @@ def sample_mixture(
     return given.means[k] + torch.einsum("nij,nj->ni", given.axes[k], given.variances[k].sqrt() * z)
 
 
-def noised(given: Mixture, s: int, schedule: Schedule) -> Mixture:
+def noised_mixture(given: Mixture, s: int, schedule: Schedule) -> Mixture:
     """The mixture q(x_s).
 
     Means become sqrt(alpha_bar_s) mean, variances alpha_bar_s var + 1 - alpha_bar_s.
@@ -93,7 +93,9 @@ def _check_width(variances: Float[Tensor, "K D"]) -> None:
     """A part without width is a point: it has no density."""
     flat = (variances <= 0).any(-1).nonzero()
     if len(flat):
-        raise ValueError(f"part {int(flat[0])} of the mixture has no width: add noise (`noised`)")
+        raise ValueError(
+            f"part {int(flat[0])} of the mixture has no width: add noise (`noised_mixture`)"
+        )
 
 
 def _on(device: torch.device, given: Mixture) -> Mixture:

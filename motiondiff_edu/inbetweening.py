@@ -6,9 +6,9 @@ The first frames (the paper's "seed"), keyframes or a part of the body can be gi
                       then one normal step of sampling
 
 At the end the given entries are restored exactly. No extra training is needed. But masking alone
-does not sample the conditional distribution (notebook 15): `resampled` goes there and back at every
-step. A trained network's guess can also disagree with the given entries: pass a denoiser that
-respects them (`beyond/guidance.py`). `editing.inpaint.inpaint` does all this in metres.
+does not sample the conditional distribution (notebook 15): `resampling_steps` goes there and back
+at every step. A trained network's guess can also disagree with the given entries: pass a denoiser
+that respects them (`beyond/guidance.py`). `editing.inpaint.inpaint` does all this in metres.
 Source: MoFusion 4.4; resampling after RePaint (Lugmayr and others, 2022).  Notebook: 15
 """
 
@@ -56,7 +56,7 @@ def inpaint_steps(
     known in the whole batch, no such noise is drawn, and the same generator gives the same sample
     as `ddim_steps`.
     `steps` is their number, or a list of the steps to visit; where the list rises, noise is added
-    (`resampled`).
+    (`resampling_steps`).
     Raises ValueError for steps outside 1..S, and for one that follows itself.
     Source: MoFusion 4.4; RePaint's resampling.  Notebook: 15
     """
@@ -88,7 +88,7 @@ def inpaint_steps(
     yield Step(0, x, torch.zeros_like(x), schedule)
 
 
-def resampled(visited: Sequence[int], R: int) -> list[int]:
+def resampling_steps(visited: Sequence[int], R: int) -> list[int]:
     """Take every leap but the last R times: forth, back by adding noise, and forth again.
 
     This lets unknown entries adapt to known ones. resampled([30, 20, 10], 2) = [30, 20, 30, 20, 10,

@@ -76,7 +76,7 @@ def training_loss(
     context    the model's input beside x_s and s: `mofusion.Music`, or None
     kinematic  `kinematic(x0_hat, x0)` is L_k of each sample (`kinematic_parts`, weighted); None
                leaves it out
-    lambda_k   a weight for each step (`over_time`); default: the paper's alpha_bar
+    lambda_k   a weight for each step (`weight_by_step`); default: the paper's alpha_bar
     loss       the loss of the target's error; others are in `beyond.loss_terms` (ours)
     The network can predict x0 or v instead of eps (`model.config.target`), which is ours, too.
     Source: MoFusion eq. 4.  Notebook: 13
@@ -173,7 +173,7 @@ def slide_loss(
     return (moved * stands).sum((1, 2)) / stands.sum((1, 2)).clamp_min(1)
 
 
-def over_time(schedule: Schedule, kind: str) -> Table:
+def weight_by_step(schedule: Schedule, kind: str) -> Table:
     """lambda(s): the weight of L_k at each step, by a name of OVER_TIME.
 
     "alpha_bar" is the paper's weight: the fraction of the signal's power, which is almost 0 where

@@ -11,7 +11,7 @@ Source: MoDiff III-F, IV-A, Fig. 2.  Notebook: 07
 
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import torch
@@ -71,9 +71,6 @@ class MoDiffConfig:
             )
         if self.target not in TARGETS:
             raise ValueError(f"target must be one of {', '.join(TARGETS)}, not {self.target!r}")
-
-    def as_dict(self) -> dict:
-        return asdict(self)
 
 
 MODIFF_PAPER = MoDiffConfig(dropout=0.1, skip=False)

@@ -11,7 +11,7 @@ Source: MoFusion 3.1-3.3, Fig. 3.  Notebook: 12
 """
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from itertools import pairwise
 
 import torch
@@ -67,8 +67,10 @@ class MoFusionConfig:
         if self.target not in TARGETS:
             raise ValueError(f"target must be one of {', '.join(TARGETS)}, not {self.target!r}")
 
-    def as_dict(self) -> dict:
-        return asdict(self)
+    @property
+    def context_width(self) -> int:
+        """Of the music's tokens: that of the second level, where there are two."""
+        return self.widths[:2][-1]
 
 
 MOFUSION_FULL = MoFusionConfig(widths=(256, 512, 1024), heads=8)
@@ -195,7 +197,7 @@ class MoFusion(nn.Module):
         self.step_in = nn.Sequential(
             nn.Linear(width, width), nn.SiLU(), nn.Linear(width, width), nn.SiLU()
         )
-        context = widths[1 if len(widths) > 1 else 0]
+        context = config.context_width
         self.music = MusicEncoder(config.C, context, config.music_layers) if config.C else None
         self.into = FrameConv(config.D, first)
 

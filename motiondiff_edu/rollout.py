@@ -31,7 +31,8 @@ COLUMNS = ("forward speed", "speed to the left", "turning rate")  # m/s, m/s, ra
 class Units(Protocol):
     """Conversion between metres (or m/s) and a network's units; `mean` is on its device."""
 
-    mean: Tensor
+    @property
+    def mean(self) -> Tensor: ...
 
     def transform(self, x: Tensor) -> Tensor: ...
 
@@ -42,10 +43,17 @@ class Units(Protocol):
 class Sizes(Protocol):
     """Frames given (T_h) and predicted (T_p); widths of a pose (D) and of a row of control (C)."""
 
-    T_h: int
-    T_p: int
-    D: int
-    C: int
+    @property
+    def T_h(self) -> int: ...
+
+    @property
+    def T_p(self) -> int: ...
+
+    @property
+    def D(self) -> int: ...
+
+    @property
+    def C(self) -> int: ...
 
 
 @runtime_checkable
@@ -59,8 +67,11 @@ class AnyWalker(Protocol):
     @property
     def config(self) -> Sizes: ...
 
-    pose_scaler: Units
-    control_scaler: Units
+    @property
+    def pose_scaler(self) -> Units: ...
+
+    @property
+    def control_scaler(self) -> Units: ...
 
     def window_sampler(self, steps: int | None = None) -> WindowSampler: ...
 
@@ -131,9 +142,27 @@ def generate(
     Source: MoDiff Alg. 2, Fig. 5.  Notebook: 07, 08
     """
     past, control = torch.as_tensor(past), torch.as_tensor(control)
-    single = past.dim() == 2
-    T_h = walker.config.T_h
-    D, C = walker.config.D, walker.config.C
+    check_inputs(walker.config, past, control)
+    single, T_h = past.dim() == 2, walker.config.T_h
+    past, control = (x[None] if single else x for x in (past, control))
+    check_range(control, T_h, getattr(walker, "card", {}).get("control_range"), hold=hold)
+    generator = generator or torch.Generator().manual_seed(seed)
+    past, control = (x.float().to(walker.pose_scaler.mean.device) for x in (past, control))
+    poses = walker.pose_scaler.transform(past)
+    velocities = walker.control_scaler.transform(control)
+    sample, T_p = walker.window_sampler(steps), walker.config.T_p
+    frames = control.shape[1] - T_h
+    loop = rollout_steps(
+        sample, poses, velocities, frames, T_p, generator=generator, keep=keep, hold=hold
+    )
+    new = walker.pose_scaler.inverse(torch.stack([frame.pose for frame in loop], dim=1))
+    return new[0] if single else new
+
+
+def check_inputs(sizes: Sizes, past: Tensor, control: Tensor) -> None:
+    """Raise ValueError unless past and control fit a walker of these sizes and have no NaN."""
+    T_h = sizes.T_h
+    D, C = sizes.D, sizes.C
     if (
         past.dim() not in (2, 3)
         or past.dim() != control.dim()
@@ -145,31 +174,18 @@ def generate(
             f"walker takes (B, {T_h}, {D}) and (B, T, {C}), or both without B; "
             "flatten positions (T, 21, 3) to (T, 63)"
         )
-    past, control = (x[None] if single else x for x in (past, control))
-    frames = control.shape[1] - past.shape[1]
-    if past.shape[1] != T_h:
+    if past.shape[-2] != T_h:
         raise ValueError(
-            f"the walker continues {T_h} past poses, not {past.shape[1]}: "
+            f"the walker continues {T_h} past poses, not {past.shape[-2]}: "
             f"pass past[..., -{T_h}:, :]"
         )
-    if frames < 1:
+    if control.shape[-2] <= T_h:
         raise ValueError(
-            f"control has {control.shape[1]} rows and {T_h} of them belong to the past; "
+            f"control has {control.shape[-2]} rows and {T_h} of them belong to the past; "
             "there is none for the future"
         )
     if not (torch.isfinite(past).all() and torch.isfinite(control).all()):
         raise ValueError("past or control contains NaN or infinity; fill the holes first")
-    check_range(control, T_h, getattr(walker, "card", {}).get("control_range"), hold=hold)
-    generator = generator or torch.Generator().manual_seed(seed)
-    past, control = (x.float().to(walker.pose_scaler.mean.device) for x in (past, control))
-    poses = walker.pose_scaler.transform(past)
-    velocities = walker.control_scaler.transform(control)
-    sample, T_p = walker.window_sampler(steps), walker.config.T_p
-    loop = rollout_steps(
-        sample, poses, velocities, frames, T_p, generator=generator, keep=keep, hold=hold
-    )
-    new = walker.pose_scaler.inverse(torch.stack([frame.pose for frame in loop], dim=1))
-    return new[0] if single else new
 
 
 def check_range(

@@ -21,7 +21,6 @@ from motiondiff_edu.ddpm import (
     make_schedule,
     p_mean,
     p_sample,
-    p_variance,
     posterior_variance,
     q_posterior,
     q_sample,
@@ -243,14 +242,6 @@ def test_p_mean_with_the_true_noise_is_the_posterior_mean():
     s = 37
     x_s = q_sample(x0, s, schedule, eps)
     torch.testing.assert_close(p_mean(x_s, s, eps, schedule), q_posterior(x0, x_s, s, schedule)[0])
-
-
-def test_variances_are_the_papers_and_its_lower_bound():
-    schedule = linear_schedule()
-    assert torch.equal(p_variance(schedule), schedule.beta)
-    assert (p_variance(schedule, "posterior")[1:] < schedule.beta[1:]).all()
-    with pytest.raises(ValueError, match="posterior"):
-        p_variance(schedule, "fixed_small")
 
 
 @pytest.mark.parametrize("variance", ["beta", "posterior"])

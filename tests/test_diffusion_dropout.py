@@ -5,6 +5,7 @@ Eq. 12's mean and variance, its rate, who is hit, and the schedule of rates.
 
 import pytest
 import torch
+from seeds import seeded
 
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.diffusion_dropout import (
@@ -13,14 +14,10 @@ from motiondiff_edu.diffusion_dropout import (
     diffusion_dropout,
     dropout_rate,
     frame_dropout,
-    zeroing,
+    zero_past,
 )
 
 SCHEDULE = linear_schedule(100)
-
-
-def seeded(seed: int = 0) -> torch.Generator:
-    return torch.Generator().manual_seed(seed)
 
 
 def test_rate_zero_is_the_identity_and_rate_one_is_equation_12():
@@ -101,7 +98,7 @@ def test_rivals_set_frames_or_whole_pasts_to_zero():
     assert torch.equal(frames.any(-1), frames.all(-1))
     assert frames.float().mean().item() == pytest.approx(0.3, abs=0.02)
     assert 0 < frames[:, :, 0].float().mean(1).std().item()  # some frames of a past, not all
-    whole = (zeroing(past, 0.3, seeded(5)) == 0).flatten(1)
+    whole = (zero_past(past, 0.3, seeded(5)) == 0).flatten(1)
     assert torch.equal(whole.any(1), whole.all(1)) and whole.float().mean().item() == pytest.approx(
         0.3, abs=0.03
     )
@@ -130,7 +127,7 @@ def test_wrong_inputs():
     for call in (
         lambda: diffusion_dropout(past, s, SCHEDULE, 1.5),
         lambda: frame_dropout(past, -0.1),
-        lambda: zeroing(past, 2.0),
+        lambda: zero_past(past, 2.0),
         lambda: dropout_rate((0.1, 1.2)),
         lambda: dropout_rate(()),
         lambda: dropout_rate(start=-1.0),

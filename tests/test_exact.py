@@ -11,7 +11,7 @@ from motiondiff_edu.exact import (
     exact_denoiser,
     log_density,
     mixture,
-    noised,
+    noised_mixture,
     posterior_mean,
     sample_mixture,
 )
@@ -34,7 +34,7 @@ def test_density_of_x_s_is_the_blurred_density_of_x0(s):
     p0 = log_density(truth, GRID).exp()
     integral = (normal(x_s, a * GRID[:, 0], rest) * p0).sum(1) * (GRID[1, 0] - GRID[0, 0])
     torch.testing.assert_close(
-        log_density(noised(truth, s, SCHEDULE), x_s), integral.log(), atol=1e-5, rtol=1e-5
+        log_density(noised_mixture(truth, s, SCHEDULE), x_s), integral.log(), atol=1e-5, rtol=1e-5
     )
 
 
@@ -63,7 +63,7 @@ def test_denoiser_is_the_score_of_the_noised_density():
     """eps_hat = -sqrt(1 - alpha_bar) d log q(x_s) / d x_s, by automatic differentiation."""
     truth, s = crossed_bars(), 45
     x = torch.randn(6, 2, dtype=torch.float64, requires_grad=True)
-    log_density(noised(truth, s, SCHEDULE), x).sum().backward()
+    log_density(noised_mixture(truth, s, SCHEDULE), x).sum().backward()
     eps_hat = exact_denoiser(truth, SCHEDULE)(x.detach(), torch.full((6,), s))
     torch.testing.assert_close(eps_hat, -((1 - SCHEDULE.alpha_bar[s]) ** 0.5) * x.grad)
 
@@ -127,7 +127,7 @@ def test_dataset_denoiser_equals_a_mixture_without_width():
 def test_a_standard_gaussian_stays_itself():
     for s in (1, 50, 100):
         torch.testing.assert_close(
-            noised(gaussian(), s, SCHEDULE).variances, torch.ones(1, 1, dtype=torch.float64)
+            noised_mixture(gaussian(), s, SCHEDULE).variances, torch.ones(1, 1, dtype=torch.float64)
         )
 
 

@@ -181,14 +181,14 @@ def test_a_reconstruction_is_drawn_by_its_seed(walked):
 
 
 def test_a_reconstruction_keeps_the_root_and_so_the_control(walked):
-    given = walked.rooted()
+    given = replace(walked, root=walked.path())
     made = md.reconstruct(given, given.all_but("LeftArm"))
     np.testing.assert_array_equal(made.root, given.root)
     np.testing.assert_array_equal(made.control, given.control)
 
 
 def test_in_betweens_without_a_pelvis_have_a_root_of_their_own(walked):
-    given = walked.rooted()
+    given = replace(walked, root=walked.path())
     gap = given.known
     gap[20:30] = False
     assert md.inbetween(given, gap, steps=2).root is None

@@ -5,19 +5,16 @@ What is given comes back, what is not follows the true conditional once it is re
 
 import pytest
 import torch
+from seeds import seeded
 from two_numbers import correlated, given_first
 
 from data_synth.mixtures import crossed_bars
 from motiondiff_edu.beyond.guidance import with_guess
 from motiondiff_edu.ddpm import cosine_schedule, ddim_steps, timesteps
 from motiondiff_edu.exact import conditional, exact_denoiser, log_density, sample_mixture
-from motiondiff_edu.inbetweening import inpaint_steps, resampled
+from motiondiff_edu.inbetweening import inpaint_steps, resampling_steps
 
 SCHEDULE = cosine_schedule(100)
-
-
-def seeded(seed: int = 0) -> torch.Generator:
-    return torch.Generator().manual_seed(seed)
 
 
 def last(loop):
@@ -58,7 +55,7 @@ def test_masking_with_the_exact_denoiser_misses_the_conditional_until_it_resampl
             SCHEDULE,
             given,
             known,
-            steps=resampled(timesteps(100, 50), resample),
+            steps=resampling_steps(timesteps(100, 50), resample),
             generator=seeded(2),
         )
         x = last(loop)
@@ -75,7 +72,11 @@ def test_nothing_known_is_plain_sampling_and_all_known_is_the_input():
     denoise = exact_denoiser(truth, SCHEDULE)
     nothing = torch.zeros(50, 2, dtype=torch.bool)
     for eta in (0.0, 1.0):
-        thrice = {"steps": resampled(timesteps(100, 50), 3), "eta": eta, "generator": seeded(4)}
+        thrice = {
+            "steps": resampling_steps(timesteps(100, 50), 3),
+            "eta": eta,
+            "generator": seeded(4),
+        }
         ours = last(inpaint_steps(denoise, start, SCHEDULE, start, nothing, **thrice))
         plain = last(ddim_steps(denoise, start, SCHEDULE, 50, eta, generator=seeded(4)))
         torch.testing.assert_close(ours, plain, atol=1e-5, rtol=1e-5)
@@ -98,10 +99,11 @@ def test_the_known_part_is_a_snapshot_noised_for_the_step():
 
 
 def test_resampling_goes_there_back_and_there():
-    assert resampled([30, 20, 10], 2) == [30, 20, 30, 20, 10, 20, 10]
-    assert resampled([9, 4], 3) == [9, 4, 9, 4, 9, 4] and resampled([9, 4], 1) == [9, 4]
+    assert resampling_steps([30, 20, 10], 2) == [30, 20, 30, 20, 10, 20, 10]
+    assert resampling_steps([9, 4], 3) == [9, 4, 9, 4, 9, 4]
+    assert resampling_steps([9, 4], 1) == [9, 4]
     with pytest.raises(ValueError, match="R must be at least 1"):
-        resampled([9, 4], 0)
+        resampling_steps([9, 4], 0)
 
 
 def test_a_way_back_adds_the_noise_of_the_forward_process():
@@ -109,7 +111,7 @@ def test_a_way_back_adds_the_noise_of_the_forward_process():
     n, nothing = 6000, torch.zeros(6000, 2)
     known = torch.tensor([True, False]).expand(n, 2)
     denoise = with_guess(lambda x, s: x, SCHEDULE, lambda x0: torch.full_like(x0, 3.0))
-    visited = resampled([60, 10], 2)
+    visited = resampling_steps([60, 10], 2)
     loop = inpaint_steps(
         denoise, nothing, SCHEDULE, nothing, known, steps=visited, generator=seeded(8)
     )

@@ -15,10 +15,10 @@ from motiondiff_edu.kinematic_loss import (
     bone_lengths,
     kinematic_parts,
     motion_loss,
-    over_time,
     skeleton_loss,
     slide_loss,
     training_loss,
+    weight_by_step,
 )
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, TOES
 from motiondiff_edu.prediction import x0_from_eps
@@ -141,15 +141,17 @@ def test_the_identity_behind_the_papers_weight():
 
 def test_weights_over_time():
     schedule = cosine_schedule(50)
-    assert torch.equal(over_time(schedule, "alpha_bar"), schedule.alpha_bar)
-    assert (over_time(schedule, "none") == 0).all() and (over_time(schedule, "constant") == 1).all()
-    snr = over_time(schedule, "snr")
+    assert torch.equal(weight_by_step(schedule, "alpha_bar"), schedule.alpha_bar)
+    assert (weight_by_step(schedule, "none") == 0).all() and (
+        weight_by_step(schedule, "constant") == 1
+    ).all()
+    snr = weight_by_step(schedule, "snr")
     assert snr[0] == 5 and snr[25] == pytest.approx(
         float(schedule.alpha_bar[25] / (1 - schedule.alpha_bar[25]))
     )
     assert all((table(schedule.alpha_bar).diff() <= 0).all() for table in OVER_TIME.values())
     with pytest.raises(ValueError, match="alpha_bar"):
-        over_time(schedule, "linear")
+        weight_by_step(schedule, "linear")
 
 
 class Says(torch.nn.Module):

@@ -169,7 +169,7 @@ def test_a_turn_keeps_lengths_and_zero_turns_nothing():
 
 @torch.no_grad()
 def test_without_music_the_motion_attends_to_itself():
-    config = MoFusionConfig(**{**TINY.as_dict(), "C": 0})
+    config = replace(TINY, C=0)
     model, lengths = shaken(config), torch.tensor([21, 13])
     x, s = torch.randn(2, 21, 7), torch.tensor([3, 9])
     out = model(x, s, None, lengths)
@@ -188,7 +188,7 @@ def test_without_music_the_motion_attends_to_itself():
 @torch.no_grad()
 @pytest.mark.parametrize("change", [{}, {"skip": True, "target": "eps"}, {"music_layers": 0}])
 def test_a_song_encoded_once_is_decoded_at_every_step(change):
-    model = shaken(MoFusionConfig(**{**TINY.as_dict(), **change}))
+    model = shaken(replace(TINY, **change))
     heard, x = model.listen(*music(3, 64)), torch.randn(3, 37, 7)
     memory = model.encode(heard, 37)
     for s in (torch.full((3,), 1), torch.full((3,), 30), torch.tensor([2, 9, 28])):
@@ -240,7 +240,7 @@ def test_sizes_are_checked():
 
 
 def test_gradients_reach_every_weight():
-    model = shaken(MoFusionConfig(**{**TINY.as_dict(), "skip": True, "target": "eps"}))
+    model = shaken(replace(TINY, skip=True, target="eps"))
     mel, times = music(2, 30)
     model(
         torch.randn(2, 18, 7), torch.tensor([3, 20]), model.listen(mel, times)

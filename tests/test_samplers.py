@@ -15,10 +15,6 @@ def dummy(x, s):
     return x * ((s - 1) / s).float().reshape(-1, 1, 1, 1)
 
 
-def seeded(seed: int) -> torch.Generator:
-    return torch.Generator().manual_seed(seed)
-
-
 def last_of(steps):
     *_, last = steps
     return last.x_s

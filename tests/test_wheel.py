@@ -131,7 +131,7 @@ def test_weights_and_es_module_are_found(elsewhere):
     _, found = elsewhere
     shipped = {path.stem for path in (ROOT / "motiondiff_edu" / "pretrained").glob("*.safetensors")}
     assert shipped <= set(found["walkers"]) and all(found["walkers"].values())
-    assert found["module"] == len(module.joined()) > 20_000
+    assert found["module"] == len(module.es_module()) > 20_000
 
 
 def test_lab_opens_a_copy_of_the_wheels_notebooks(elsewhere):

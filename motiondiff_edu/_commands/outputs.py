@@ -122,14 +122,14 @@ def read(path: Path, mapping: dict[str, str] | None = None, file_fps: float | No
     return read_motion(path, mapping=mapping, file_fps=file_fps)
 
 
-def listed(made: object) -> list:
+def as_list(made: object) -> list:
     """The result of a verb as a list: it is one motion, or a list for several samples."""
     return made if isinstance(made, list) else [made]
 
 
 def write_all(made: object, paths: Sequence[Path]) -> None:
     """Write each motion to its file, and print what was written."""
-    for motion, path in zip(listed(made), paths, strict=True):
+    for motion, path in zip(as_list(made), paths, strict=True):
         motion.save(path, overwrite=True)  # `output_paths` has checked the names
         print(f"{path}: {motion.seconds:.1f} s, {len(motion)} frame{'s' * (len(motion) > 1)}")
 

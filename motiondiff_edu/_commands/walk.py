@@ -32,7 +32,7 @@ def run(args: argparse.Namespace) -> None:
 
     outputs.say("walking")
     made = load("walker").walk(motion, joystick(segments), samples=args.samples, seed=args.seed)
-    made = outputs.listed(made)
+    made = outputs.as_list(made)
     if args.joined:
         before = motion.resampled(made[0].fps)
         made = [before.then(more) for more in made]

@@ -21,7 +21,7 @@ from torch import Tensor
 from ..beyond.guidance import blended, guided
 from ..ddpm import Denoiser, Schedule, final, timesteps
 from ..exact import Mixture, conditional, conditional_parts, sample_mixture
-from ..inbetweening import inpaint_steps, resampled
+from ..inbetweening import inpaint_steps, resampling_steps
 from .mixture_fit import responsibilities
 
 
@@ -176,7 +176,7 @@ def draw_samples(
             denoise = guided(denoise, schedule, *held, method.guidance)
         if method.blend is not None:
             denoise = blended(denoise, schedule, *held, method.blend)
-        steps = resampled(timesteps(schedule.S, method.steps), method.resample)
+        steps = resampling_steps(timesteps(schedule.S, method.steps), method.resample)
         loop = inpaint_steps(denoise, start, schedule, *held, steps=steps, generator=generator)
         return final(loop).x_s.flatten(1)
     x = torch.where(

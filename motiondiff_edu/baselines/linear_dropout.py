@@ -16,7 +16,7 @@ from jaxtyping import Float
 from torch import Tensor
 
 from ..performers.windows import Windows
-from .linear_gaussian import LinearGaussian, design, fitted
+from .linear_gaussian import LinearGaussian, design, walker_of
 
 Drop = Callable[
     [Tensor, torch.Generator | None], Tensor
@@ -59,7 +59,7 @@ def check_rate(rate: float) -> None:
         raise ValueError(f"a rate must be between 0 and 1, not {rate:g}")
 
 
-def noised(rate: float, alpha_bar: Float[Tensor, "S"]) -> Moments:
+def noise_moments(rate: float, alpha_bar: Float[Tensor, "S"]) -> Moments:
     """Diffusion dropout with equally likely steps, given by their alpha_bar.
 
     In a noised past, keep is the mean of sqrt(alpha_bar), share that of alpha_bar, floor that of
@@ -70,7 +70,7 @@ def noised(rate: float, alpha_bar: Float[Tensor, "S"]) -> Moments:
     return Moments(float(keep), share.double(), float(rate * (1 - alpha_bar).mean()))
 
 
-def zeroed(rate: float) -> Moments:
+def zero_moments(rate: float) -> Moments:
     """Whole pasts set to zero.
 
     The penalty is proportional to X^T X, so it shrinks all weights of the past by the same factor.
@@ -126,7 +126,7 @@ def products(
     return Products(both[:, : len(both)], both[:, len(both) :], Y.T @ Y / len(Y), windows)
 
 
-def expected(clean: Products, moments: Moments) -> Products:
+def expected_products(clean: Products, moments: Moments) -> Products:
     """The limit of `products(windows, drop)` for many draws, from the products of clean pasts.
 
     Notebook: 09
@@ -152,7 +152,7 @@ def fit(dropped: Products, clean: Products | None = None, ridge: float = 1e-6) -
         dropped.xx + ridge * torch.eye(len(dropped.xx), dtype=torch.float64), dropped.xy
     )
     left = clean.yy - weight.T @ clean.xy - clean.xy.T @ weight + weight.T @ clean.xx @ weight
-    return fitted(clean.windows, weight, (left + left.T) / 2)
+    return walker_of(clean.windows, weight, (left + left.T) / 2)
 
 
 def contributions(walker: LinearGaussian, clean: Products) -> tuple[float, float]:

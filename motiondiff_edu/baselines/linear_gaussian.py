@@ -111,10 +111,10 @@ def fit(windows: Windows, ridge: float = 1e-3) -> LinearGaussian:
     penalty = ridge * len(X) * torch.eye(X.shape[1], dtype=torch.float64)
     weight = torch.linalg.solve(X.T @ X + penalty, X.T @ Y)
     left = Y - X @ weight
-    return fitted(windows, weight, left.T @ left / len(left))
+    return walker_of(windows, weight, left.T @ left / len(left))
 
 
-def fitted(
+def walker_of(
     windows: Windows, weight: Float[Tensor, "F D"], covariance: Float[Tensor, "D D"]
 ) -> LinearGaussian:
     """The walker with these weights and this covariance of its noise.  Notebook: 09"""

@@ -1,12 +1,12 @@
 """A plain transformer that dances, without a U-Net: frames attend to frames and to the music.
 
 With the noised motion and the step as input, it is a denoiser of the U-Net's size. With only the
-music as input, it is a regression (`regression.py`).
+music as input, it is a regression (`regression_loss`).
 Source: AI Choreographer's cross-modal transformer (cited by MoFusion 4.1), made small; the sizes
 are ours.
 """
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import torch
 from jaxtyping import Bool, Float, Int
@@ -15,7 +15,8 @@ from torch import Tensor, nn
 from ..cross_modal_attention import CrossModalAttention, angles_of
 from ..modiff import step_embedding
 from ..mofusion import CrossAttentionBlock, Music, MusicEncoder
-from ..performers.networks import register
+from ..performers.hearing_mofusion import EarSizes, WithEar
+from ..performers.networks import DancerNetwork, register
 from ..prediction import TARGETS
 
 
@@ -51,9 +52,6 @@ class TransformerConfig:
             )
         if self.target not in TARGETS:
             raise ValueError(f"target must be one of {', '.join(TARGETS)}, not {self.target!r}")
-
-    def as_dict(self) -> dict:
-        return asdict(self)
 
 
 class Layer(nn.Module):
@@ -129,4 +127,45 @@ class DanceTransformer(nn.Module):
         return self.out(x)
 
 
+@dataclass(frozen=True)
+class HearingTransformerConfig(EarSizes, TransformerConfig):
+    """The transformer's sizes, and those of its ear."""
+
+    ear_width: int = 96
+    ear_blocks: int = 4
+
+    def __post_init__(self):
+        super().__post_init__()
+        self.check_ear()
+
+
+class HearingTransformer(WithEar, DanceTransformer):
+    """The transformer with an ear, which the regression has.  Ours."""
+
+    def __init__(self, config: HearingTransformerConfig):
+        super().__init__(config)
+        self.with_ear(config.ear, config.width)
+
+    def listen(self, mel: Tensor, times: Tensor, mask: Tensor | None = None) -> Music:
+        return self.add_ear(super().listen(mel, times, mask), mel, times, mask)
+
+
+def regression_loss(
+    model: DancerNetwork,
+    x0: Float[Tensor, "B T D"],
+    mel: Float[Tensor, "B M C"],
+    mel_times: Float[Tensor, "M"],
+) -> Float[Tensor, ""]:
+    """Mean squared error of the motion itself, from no noise at step 0: a regression's loss.
+
+    The same song then gives the same dance, the mean of all its possible dances. A mean of dances
+    hardly moves. AI Choreographer, with which MoFusion is compared, is trained so.
+    mel_times  seconds of each row of the log-Mel spectrogram
+    """
+    s = torch.zeros(len(x0), dtype=torch.long, device=x0.device)
+    out = model(torch.zeros_like(x0), s, model.listen(mel, mel_times))
+    return (out - x0).square().mean()
+
+
 register("dancer", DanceTransformer, TransformerConfig)
+register("dancer", HearingTransformer, HearingTransformerConfig)

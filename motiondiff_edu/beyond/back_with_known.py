@@ -6,18 +6,31 @@ Gain: docs/RESULTS_ALL.md (`mend-both.*`, `mend.*`).
 Source: ours; the mask is MoFusion 4.4's, the walk MoDiff III-E's.  Notebook: 15
 """
 
+from typing import Protocol, runtime_checkable
+
 import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
-from ..ddpm import draw, final
+from ..ddpm import Denoiser, Schedule, draw, final
 from ..inbetweening import inpaint_steps
 from ..reconstruction import Rollout, plain_way_back
+from ..rollout import AnyWalker
 from .guidance import blended_guess, guided
 
 WEIGHT, MOVES = 0.6, 5  # of guidance, in masked_way_back
 FADE = 10  # frames within which blended_way_back's correction fades where nothing more is known
 Frames = Float[Tensor, "B T_h D"]
+
+
+@runtime_checkable
+class DenoisingWalker(AnyWalker, Protocol):
+    """A walker with its schedule, and a denoiser that can be differentiated."""
+
+    @property
+    def schedule(self) -> Schedule: ...
+
+    def denoiser(self, past: Tensor, control: Tensor) -> Denoiser: ...
 
 
 def blended_way_back(
@@ -43,11 +56,13 @@ def masked_way_back(
     """Sample the past as the window after `ahead`, by masked sampling guided by the known entries.
 
     The sampling is `inbetweening.inpaint_steps`, in reversed time.
-    The rollout's walker must have a schedule, and a denoiser that can be differentiated.
-    Raises ValueError for a walker that predicts more or fewer poses than it is given.
+    Raises ValueError for a walker that is no DenoisingWalker, and for one that predicts more or
+    fewer poses than it is given.
     Notebook: 15
     """
     walker = rollout.walker
+    if not isinstance(walker, DenoisingWalker):
+        raise ValueError(f"a {type(walker).__name__} lacks a schedule, or a denoiser")
     config, schedule = walker.config, walker.schedule
     if config.T_p != config.T_h:
         raise ValueError(
@@ -63,7 +78,7 @@ def masked_way_back(
         schedule,
         given,
         known,
-        steps=rollout.steps or config.S,
+        steps=rollout.steps or schedule.S,
         generator=rollout.generator,
     )
     return walker.pose_scaler.inverse(final(loop).x_s)

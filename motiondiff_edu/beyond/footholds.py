@@ -13,17 +13,17 @@ docs/results/ladder): feet slide less; bone errors are larger.
 Ours; neither paper has it.  Notebook: 07
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import torch
 from jaxtyping import Float, Int
 from torch import Tensor, nn
 
-from ..diffusion_dropout import changed
+from ..diffusion_dropout import changed_samples
 from ..modiff import Memory, MoDiff, MoDiffConfig
 from ..motion.scaler import Scaler
 from ..motion.skeleton import J, joint_index
+from .shared_encoding import SharedEncoding
 
 FEET = [joint_index(name) for name in ("LeftFoot", "LeftToeBase", "RightFoot", "RightToeBase")]
 LEAN, AWAY = 2.0, 0.25  # see `openness`
@@ -79,15 +79,13 @@ class FootholdConfig(MoDiffConfig):
 
 
 @dataclass(frozen=True, eq=False)
-class Standing:
+class Standing(Memory):
     """The memory of past and control, and the standardised COLUMNS of feet that stay in place."""
 
-    memory: Memory
     held: Float[Tensor, "B T_p K"]
 
     def rows(self, chosen: Int[Tensor, "N"]) -> "Standing":
-        """Both for some samples of the batch."""
-        return Standing(self.memory.rows(chosen), self.held[chosen])
+        return Standing(**vars(super().rows(chosen)) | {"held": self.held[chosen]})
 
 
 class FootholdMoDiff(MoDiff):
@@ -96,6 +94,11 @@ class FootholdMoDiff(MoDiff):
     It needs the scalers, because footholds are computed in metres and m/s. They are not saved with
     the weights.
     """
+
+    pose_mean: Tensor
+    pose_std: Tensor
+    control_mean: Tensor
+    control_std: Tensor
 
     def __init__(self, config: FootholdConfig, pose_scaler: Scaler, control_scaler: Scaler):
         super().__init__(config)
@@ -127,15 +130,20 @@ class FootholdMoDiff(MoDiff):
         standing: Float[Tensor, "B D"] | None = None,
     ) -> Standing:
         """The memory, and the footholds of the pose `standing` (default: the last given pose)."""
-        memory = super().encode(past, control)
-        return Standing(memory, self.held(past[:, -1] if standing is None else standing, control))
+        held = self.held(past[:, -1] if standing is None else standing, control)
+        return Standing(**vars(super().encode(past, control)), held=held)
 
     def decode(
-        self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"], context: Standing
+        self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"], memory: Memory
     ) -> Float[Tensor, "B T_p D"]:
-        """x0_hat: free for most joints, between free and held for the feet."""
-        x = self.attend(self.embed(x_s, s, context.memory), context.memory)
-        return self.placed(self.head(x), self.gate(x), context.held)
+        """x0_hat: free for most joints, between free and held for the feet.
+
+        Raises TypeError for a memory without footholds.
+        """
+        if not isinstance(memory, Standing):
+            raise TypeError("decode takes what `encode` of this network returns, a Standing")
+        x = self.attend(self.embed(x_s, s, memory), memory)
+        return self.placed(self.head(x), self.gate(x), memory.held)
 
     def placed(
         self,
@@ -160,7 +168,7 @@ class CleanFootholds:
     past. Otherwise the network would still see the clean feet.
     """
 
-    model: Callable  # a FootholdMoDiff, or its SharedEncoding
+    model: FootholdMoDiff | SharedEncoding  # of a FootholdMoDiff
     clean: Float[Tensor, "B T_h D"]
     noised: Float[Tensor, "B T_h D"]
     foot_noise: float
@@ -177,7 +185,7 @@ class CleanFootholds:
         control: Float[Tensor, "B T C"],
     ) -> Float[Tensor, "B T_p D"]:
         standing = torch.lerp(self.clean, self.noised, self.foot_noise)[:, -1]
-        dropped = changed(self.noised, past)
+        dropped = changed_samples(self.noised, past)
         standing = past[:, -1].where(dropped[:, None], standing)
         return self.model.decode(x_s, s, self.model.encode(past, control, standing))
 

@@ -17,7 +17,7 @@ import torch
 from jaxtyping import Bool, Float, Int
 from torch import Tensor
 
-from ..diffusion_dropout import changed
+from ..diffusion_dropout import changed_samples
 from .loss_terms import Error, Loss
 
 Past = Float[Tensor, "B T_h D"]
@@ -49,7 +49,7 @@ class NoisedPastWeight:
         self, past: Past, s: Int[Tensor, "B"], generator: torch.Generator | None = None
     ) -> Past:
         noised = self.dropout(past, s, generator)
-        self.noised = changed(past, noised)
+        self.noised = changed_samples(past, noised)
         return noised
 
     def weighted(self, loss: Loss) -> Loss:

@@ -39,7 +39,7 @@ class SelfAttendingMoFusion(MoFusion):
     def _layer(self, config: MoFusionConfig) -> nn.ModuleDict:
         """A layer of the middle: attention to the condition, then to the motion."""
         *_, width = config.widths
-        context = self.music.project.out_features if self.music else width
+        context = config.context_width if self.music else width
         ask = CrossAttentionBlock(width, config.heads, context)
         return nn.ModuleDict({"ask": ask, "own": CrossAttentionBlock(width, config.heads, width)})
 

@@ -11,12 +11,13 @@ Notebook: 07
 """
 
 from dataclasses import dataclass
+from typing import Any, Protocol, runtime_checkable
 
 import torch
 from jaxtyping import Float, Int
-from torch import Tensor, nn
+from torch import Tensor
 
-from ..diffusion_dropout import changed
+from ..diffusion_dropout import changed_samples
 
 
 def repeated(batch: tuple[Tensor, ...], noises: int) -> tuple[Tensor, ...]:
@@ -27,6 +28,18 @@ def repeated(batch: tuple[Tensor, ...], noises: int) -> tuple[Tensor, ...]:
     return tuple(part.repeat_interleave(noises, dim=0) for part in batch)
 
 
+@runtime_checkable
+class Encoding(Protocol):
+    """A network like MoDiff, whose memory has `rows` as `modiff.Memory` has."""
+
+    @property
+    def config(self) -> Any: ...
+
+    def encode(self, *inputs: Any) -> Any: ...
+
+    def decode(self, x_s: Tensor, s: Tensor, memory: Any, /) -> Tensor: ...
+
+
 @dataclass(frozen=True, eq=False)
 class SharedEncoding:
     """A MoDiff for `repeated` batches: it encodes equal copies of a window once.
@@ -35,14 +48,14 @@ class SharedEncoding:
     Notebook: 07
     """
 
-    model: nn.Module
+    model: Encoding
     noises: int
 
     @property
-    def config(self):
+    def config(self) -> Any:
         return self.model.config
 
-    def encode(self, *inputs: Float[Tensor, "B ..."]):
+    def encode(self, *inputs: Float[Tensor, "B ..."]) -> Any:
         """The memory of the repeated batch, in its order."""
         B = len(inputs[0])
         if B % self.noises:
@@ -54,7 +67,7 @@ class SharedEncoding:
         unlike = torch.zeros(B, dtype=torch.bool)
         for part in inputs:
             again = part[first].repeat_interleave(self.noises, dim=0)
-            unlike |= changed(again, part).cpu()
+            unlike |= changed_samples(again, part).cpu()
         others = unlike.nonzero()[:, 0]
         row = torch.arange(B) // self.noises  # row of the memory for each copy
         row[others] = len(first) + torch.arange(len(others))
@@ -62,7 +75,7 @@ class SharedEncoding:
         memory = self.model.encode(*(part[rows] for part in inputs))
         return memory.rows(row.to(inputs[0].device))
 
-    def decode(self, x_s, s, memory) -> Float[Tensor, "B T_p D"]:
+    def decode(self, x_s: Tensor, s: Tensor, memory: Any) -> Float[Tensor, "B T_p D"]:
         return self.model.decode(x_s, s, memory)
 
     def __call__(

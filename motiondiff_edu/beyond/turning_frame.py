@@ -106,7 +106,8 @@ def path_turned(
 ) -> Float[Tensor, "B T D"]:
     """The features, with the columns of the pelvis' path turned; both have the same unit."""
     whole = features.clone()
-    whole[..., PATH] = torch.stack(_rotated(*features[..., PATH].unbind(-1), turned), -1)
+    x, z = features[..., PATH].unbind(-1)
+    whole[..., PATH] = torch.stack(_rotated(x, z, turned), -1)
     return whole
 
 

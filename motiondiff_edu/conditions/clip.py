@@ -78,7 +78,7 @@ class ClipError(OSError):
 
 
 @dataclass(frozen=True, eq=False)
-class Clip:
+class ClipModel:
     """CLIP's text transformer, frozen, and the tokenizer that goes with it."""
 
     name: str
@@ -188,7 +188,7 @@ class ClipTable:
         return ClipTokens(self.rows[where].float() * mask[..., None], mask)
 
 
-def load(where: str | Path = NAME, download: bool = False) -> Clip:
+def load(where: str | Path = NAME, download: bool = False) -> ClipModel:
     """A CLIP of `transformers`: a folder, or the name that it has on the Hugging Face hub.
 
     By its name it is looked for on this machine; with `download` it is fetched if it is not here.
@@ -226,10 +226,10 @@ def load(where: str | Path = NAME, download: bool = False) -> Clip:
             f"{place} has no tokenizer that fits: it knows {len(tokenizer)} tokens, the transformer"
             f" {model.config.vocab_size}; it needs tokenizer.json, or vocab.json and merges.txt"
         )
-    return Clip(str(where), model.eval().requires_grad_(False), tokenizer)
+    return ClipModel(str(where), model.eval().requires_grad_(False), tokenizer)
 
 
-def check(clip: Clip, width: int, sample: Sequence[float] | None = None) -> None:
+def check(clip: ClipModel, width: int, sample: Sequence[float] | None = None) -> None:
     """Raise ClipError unless it is the CLIP that a network was trained with.
 
     That has tokens of this width, and this `sample`, where it is known.

@@ -142,7 +142,9 @@ def base_vocabulary(words: set[str]) -> tuple[str, ...]:
     return tuple(sorted(word for word in words if not any(f in words for f in base_forms(word))))
 
 
-def read(text: str, vocabulary: Sequence[str], others: Mapping[str, str] | None = None) -> Read:
+def read_words(
+    text: str, vocabulary: Sequence[str], others: Mapping[str, str] | None = None
+) -> Read:
     """The words of a text that a network with this vocabulary can use.
 
     Base forms are taken, and words without a meaning for movement are passed over. `others` (by

@@ -14,7 +14,7 @@ import torch
 from jaxtyping import Bool, Float, Int
 from torch import Tensor, nn
 
-from .text import Read, read
+from .text import Read, read_words
 
 # ids
 PADDING = 0  # of no word
@@ -54,9 +54,9 @@ def present(ids: Int[Tensor, "B M"]) -> Bool[Tensor, "B M"]:
 
 
 def ids_of(texts: list[tuple[str, ...]], vocabulary: tuple[str, ...]) -> Int[Tensor, "B M"]:
-    """The ids of texts that were read (`text.read`), padded to the longest; () is the empty text.
+    """The ids of texts that were read (`text.read_words`), padded to the longest.
 
-    Raises KeyError for a word that is not in the vocabulary.
+    () is the empty text. Raises KeyError for a word that is not in the vocabulary.
     """
     index = {word: FIRST + k for k, word in enumerate(vocabulary)}
     rows = [[index[word] for word in text] or [NOTHING] for text in texts]
@@ -66,13 +66,13 @@ def ids_of(texts: list[tuple[str, ...]], vocabulary: tuple[str, ...]) -> Int[Ten
 
 @dataclass(frozen=True)
 class WordReader:
-    """How a network with a vocabulary reads; `clip.Clip` has the same two methods."""
+    """How a network with a vocabulary reads; `clip.ClipModel` has the same two methods."""
 
     words: tuple[str, ...]
 
     def read(self, text: str) -> Read:
-        """The words of a text.  Raises TextError as `text.read`."""
-        return read(text, self.words)
+        """The words of a text.  Raises TextError as `text.read_words`."""
+        return read_words(text, self.words)
 
     def encoded(self, texts: Sequence[tuple[str, ...]]) -> Int[Tensor, "B M"]:
         """What the network takes of texts that were read; () is the empty text."""

@@ -29,7 +29,7 @@ class Handout:
     kept: tuple[str, ...]
 
 
-def shipped(notebooks: Path) -> dict[str, bytes]:
+def student_files(notebooks: Path) -> dict[str, bytes]:
     """{name: content} of a student's files: the student edition, and the pages it links to.
 
     The pages go to docs/ below the copies, and the links of the notebooks follow them there. Links
@@ -95,7 +95,7 @@ def written_in(mine: Path) -> Iterator[None]:
         ) from error
 
 
-def put(path: Path, content: bytes) -> None:
+def write_whole(path: Path, content: bytes) -> None:
     """Write a file whole, or not at all."""
     with replacing(path) as aside:
         aside.write_bytes(content)
@@ -111,7 +111,7 @@ def hand_out(notebooks: Path, mine: Path) -> Handout:
     """
     record = read_record(mine)
     renewed, kept = [], []
-    now = edition_of(mine).of(shipped(notebooks))
+    now = edition_of(mine).of(student_files(notebooks))
     with written_in(mine):
         for name, content in now.items():
             path, new = mine / name, digest(name, content)
@@ -121,7 +121,7 @@ def hand_out(notebooks: Path, mine: Path) -> Handout:
                     kept.append(name)
                 continue
             if there != new:
-                put(path, content)
+                write_whole(path, content)
                 renewed += [name] if there is not None else []
             record[name] = new
         for name in sorted(set(record) - set(now)):
@@ -138,7 +138,7 @@ def make_fresh(notebooks: Path, mine: Path, name: str) -> Path | None:
 
     Raises FolderError when the folder is not writable.
     """
-    content, path = edition_of(mine).of(shipped(notebooks))[name], mine / name
+    content, path = edition_of(mine).of(student_files(notebooks))[name], mine / name
     aside = None
     new = digest(name, content)
     with written_in(mine):
@@ -146,7 +146,7 @@ def make_fresh(notebooks: Path, mine: Path, name: str) -> Path | None:
             aside = free_name(path)
             path.rename(aside)
         if not path.exists():
-            put(path, content)
+            write_whole(path, content)
         write_record(mine, read_record(mine) | {name: new})
     return aside
 

@@ -49,7 +49,7 @@ def prepare(notebook: Path, jupyter_data: Path) -> None:
     from . import prepared  # its packages may be missing, and the other verbs do without them
 
     try:
-        run = prepared.prepared(notebook, notebook.parent)
+        run = prepared.prepare_notebook(notebook, notebook.parent)
     except prepared.PreparationError as error:
         print(f"{error}. It opens without outputs.")
         return

@@ -71,7 +71,7 @@ def constraints() -> dict[str, str]:
     return {pin[1].lower(): pin[2] for pin in pins if pin}
 
 
-def required() -> list[str]:
+def required_packages() -> list[str]:
     """The packages that the course itself requires."""
     lines = importlib.metadata.requires("motiondiff-edu") or []
     return [
@@ -84,7 +84,7 @@ def required() -> list[str]:
 def versions() -> Finding:
     """The installed versions are those of constraints.txt."""
     try:
-        names = required()
+        names = required_packages()
     except importlib.metadata.PackageNotFoundError:
         return Finding("versions", "motiondiff-edu is not installed", INSTALL)
     pins = constraints()

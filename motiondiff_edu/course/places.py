@@ -73,11 +73,11 @@ def command_for_lab() -> str:
 def command_for_fresh(number: str, folder: Path | None = None) -> str:
     """The command for a fresh copy of one notebook, with make or without; `folder` as typed."""
     if folder is not None:
-        return f"{program()} lab --fresh {number} --folder {quoted(str(folder))}"
+        return f"{program()} lab --fresh {number} --folder {quote_for_terminal(str(folder))}"
     by_make = in_checkout() and "MAKELEVEL" in os.environ
     return f"make lab FRESH={number}" if by_make else f"{program()} lab --fresh {number}"
 
 
-def quoted(word: str) -> str:
+def quote_for_terminal(word: str) -> str:
     """A word as one types it in this system's terminal."""
     return subprocess.list2cmdline([word]) if os.name == "nt" else shlex.quote(word)

@@ -32,16 +32,16 @@ class PreparationError(RuntimeError):
     """The notebook did not run to its end; the message says why."""
 
 
-def prepared(path: Path, folder: Path) -> nbformat.NotebookNode:
+def prepare_notebook(path: Path, folder: Path) -> nbformat.NotebookNode:
     """The notebook of `path`, run in `folder`, with outputs that need no kernel.
 
     Raises PreparationError for a notebook that does not run to its end.
     """
-    file = kept(path)
+    file = prepared_path(path)
     if file.is_file():
         return nbformat.read(file, as_version=4)
     print("It is run once, now; later demos of it open at once.", flush=True)
-    notebook = executed(nbformat.read(path, as_version=4), folder, path.stem)
+    notebook = run_cells(nbformat.read(path, as_version=4), folder, path.stem)
     for cell in notebook.cells:
         still(cell)
     first_figure_first(notebook)
@@ -56,7 +56,7 @@ def prepared(path: Path, folder: Path) -> nbformat.NotebookNode:
     return notebook
 
 
-def kept(path: Path) -> Path:
+def prepared_path(path: Path) -> Path:
     """The file of this notebook, prepared; another one after each change of notebook or code."""
     return cache() / f"{path.stem}-{digest(path)}.ipynb"
 
@@ -79,7 +79,7 @@ def digest(path: Path) -> str:
     return found.hexdigest()[:16]
 
 
-def executed(
+def run_cells(
     notebook: nbformat.NotebookNode, folder: Path, name: str = "the notebook"
 ) -> nbformat.NotebookNode:
     """Run all cells, with a bar that says how far it is."""

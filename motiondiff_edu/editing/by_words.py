@@ -26,7 +26,7 @@ from ..motion.known import checked_given
 from ..motion.moving_frame import D
 from ..motion.root_frame import estimate_root
 from ..motion.skeleton import HIPS, TOES, J
-from ..performers.joined import leg_size
+from ..performers.continuation import leg_size
 from ..performers.mover import ETA, STEPS, Mover
 from ..performers.performer import Watch
 from ..performers.text_mofusion import Texts
@@ -63,7 +63,7 @@ def edit_by_words(
     positions, mask = checked_given(positions, nothing if known is None else known)
     if not np.isfinite(positions).all():
         raise ValueError("positions contain NaN or infinity: fill or cut these frames first")
-    ways = visited(mover.schedule.S, STEPS, strength)
+    ways = edit_steps(mover.schedule.S, STEPS, strength)
     texts = mover.reader.encoded([mover.reader.read(text).words] * samples)
     generator = generator or torch.Generator().manual_seed(0)
     size = leg_size(positions)  # the mover knows figures of the course's size
@@ -117,7 +117,7 @@ def kept_columns(known: Bool[np.ndarray, "T 21"]) -> Bool[Tensor, "T 22"]:
     return torch.where(timeline.of_the_legs(), legs[:, None], arms[:, None])
 
 
-def visited(S: int, steps: int, strength: float) -> list[int]:
+def edit_steps(S: int, steps: int, strength: float) -> list[int]:
     """The diffusion steps of an edit: those of DDIM up to `strength` S; the last one at least.
 
     Raises ValueError for a strength that is not above 0 and at most 1.

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from ..ddpm import Generators, timesteps
-from ..inbetweening import resampled
+from ..inbetweening import resampling_steps
 from ..motion.cleanup import clean_up
 from ..motion.root_frame import FPS
 from ..performers.inbetweener import STEPS, Inbetweener
@@ -30,7 +30,7 @@ def inbetween(
     bit as they were given. `resample`: how often each of the `steps` is made.
     Source: MoFusion 4.4.  Notebook: 15
     """
-    visited = resampled(timesteps(inbetweener.schedule.S, steps), resample)
+    visited = resampling_steps(timesteps(inbetweener.schedule.S, steps), resample)
     made = inbetweener.fill(positions, known, samples=samples, steps=visited, generator=generator)
     return clean_samples(made, known)
 

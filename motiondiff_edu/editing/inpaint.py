@@ -28,7 +28,8 @@ from ..performers.dancer import STEPS, Dancer
 # of a gap
 WEIGHT = 0.5
 FADE = 10  # frames within which a correction fades before the first and after the last given entry
-Given, Known = Float[Tensor, "B T 63"], Bool[Tensor, "B T 63"]
+Given = Float[Tensor, "B T 63"]
+Known = Bool[Tensor, "B T 63"]
 # (denoiser, schedule, given, known) -> a denoiser that respects what is given
 Steer = Callable[[Denoiser, Schedule, Tensor, Tensor], Denoiser]
 
@@ -50,7 +51,7 @@ def inpaint(
     the motion from its first known pose. If nothing is known, the result is a plain sample.
 
     mel       the log-Mel spectrogram of the song, for a dancer with music
-    steps     of DDIM: how many, or which to visit (`inbetweening.resampled`)
+    steps     of DDIM: how many, or which to visit (`inbetweening.resampling_steps`)
     steer     `blend` or `guide_and_blend`; None: masked sampling as printed
     generator without one, the seed is 0
     Raises ValueError where a joint is given without the pelvis, or is given but NaN or infinite,
@@ -74,7 +75,7 @@ def inpaint(
 
 def blend(denoise: Denoiser, schedule: Schedule, given: Given, known: Known) -> Denoiser:
     """The denoiser, corrected so that its guess goes through the given entries."""
-    return blended(denoise, schedule, given, known, fading(FADE).to(given.device))
+    return blended(denoise, schedule, given, known, fade_lengths(FADE).to(given.device))
 
 
 def guide_and_blend(denoise: Denoiser, schedule: Schedule, given: Given, known: Known) -> Denoiser:
@@ -84,7 +85,7 @@ def guide_and_blend(denoise: Denoiser, schedule: Schedule, given: Given, known: 
     return blend(denoise, schedule, given, known)
 
 
-def fading(frames: int) -> Float[Tensor, "63"]:
+def fade_lengths(frames: int) -> Float[Tensor, "63"]:
     """Fade lengths for `blended`: `frames` for every column, infinity for the pelvis' x and z.
 
     So the figure does not return to where it started.

@@ -71,7 +71,7 @@ def keyframes_of(motion: Motion | int, every: int = 20) -> Bool[np.ndarray, "T J
     """
     T = int(motion) if isinstance(motion, Integral) else len(as_motion(motion))
     made = keyframes(checked_count(T, "a motion's number of frames"), checked_count(every, "every"))
-    if isinstance(motion, Integral) or motion.skeleton != COURSE:
+    if not isinstance(motion, Motion) or motion.skeleton != COURSE:
         return made
     return made & motion.known & motion.known[:, [HIPS]]
 

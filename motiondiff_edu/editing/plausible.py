@@ -139,8 +139,12 @@ def each_until_plausible(
 
     `generate(draws, remainder)` draws a motion for each of the generators.
     """
+
+    def again(draw: torch.Generator) -> Callable[[float], Float[np.ndarray, "T 21 3"]]:
+        return lambda share: generate([draw], share)[0]
+
     return [
-        until_plausible(first, given, known, lambda share, draw=draw: generate([draw], share)[0])
+        until_plausible(first, given, known, again(draw))
         for draw, first in zip(draws, samples, strict=True)
     ]
 

@@ -23,11 +23,10 @@ from ..motion.dance_frame import headings_between
 from ..motion.directions import ARMS, UPLEGS
 from ..motion.motion import MotionError, MotionWarning
 from ..motion.root_frame import FPS, smoothed_root, to_root_frame, to_world
-from ..motion.scaler import Scaler
 from ..motion.skeleton import HIPS, JOINTS, J
-from ..performers.joined import farthest, unlike_training
+from ..performers.continuation import farthest, unlike_training
 from ..reconstruction import Rollout, Stop
-from ..rollout import SLACK, AnyWalker
+from ..rollout import SLACK, AnyWalker, Units
 
 ROUNDS, STEPS = 3, 10  # rounds there and back; steps of DDIM
 BATCH = 64  # windows at once
@@ -99,10 +98,10 @@ def within_training(
 
 
 def warn_of_unlike(
-    scaler: Scaler, given: Float[Tensor, "T 63"], known: Bool[np.ndarray, "T 21"]
+    scaler: Units, given: Float[Tensor, "T 63"], known: Bool[np.ndarray, "T 21"]
 ) -> None:
     """A MotionWarning where poses with missing joints are unlike those of the walker's training."""
-    holes = ~known.all(1)
+    holes = ~np.all(known, axis=1)
     unlike = unlike_training(scaler, given[holes].float(), known[holes])
     if unlike:
         warnings.warn(
@@ -159,7 +158,7 @@ def _windows(known: Bool[np.ndarray, "T 21"], T_h: int) -> Int[np.ndarray, "W"]:
         raise MotionError(f"the motion has {T} frames; the walker's windows have {T_h}")
     firsts = {
         min(max(begin, 0), T - T_h)
-        for first, last in runs(~known.all(axis=1)).tolist()
+        for first, last in runs(~np.all(known, axis=1)).tolist()
         for begin in range(first - half, last, half)
     }
     return np.array(sorted(firsts))

@@ -156,11 +156,11 @@ def on_the_spot(s: Signals) -> list[Recognised]:
     slow = scipy.ndimage.maximum_filter1d(np.hypot(s.ahead, s.left), round(s.fps)) < 1.5  # m/s
     found = []
     low = peaks(-s.pelvis, -0.74, 0.12, s.fps, half=2.6)
-    found += counted("squat", "", {t: x for t, x in low.items() if s.back[t] <= SITS}, s.fps)
-    sits = counted("sit", "", {t: x for t, x in low.items() if s.back[t] > SITS}, s.fps)
+    found += repeated_acts("squat", "", {t: x for t, x in low.items() if s.back[t] <= SITS}, s.fps)
+    sits = repeated_acts("sit", "", {t: x for t, x in low.items() if s.back[t] > SITS}, s.fps)
     found += [replace(one, count=1) for one in sits]
     off = peaks(np.minimum(s.toes.min(1), s.pelvis - 0.98), 0.05, 0.04, s.fps)
-    for jumps in counted("jump", "", {t: x for t, x in off.items() if slow[t]}, s.fps):
+    for jumps in repeated_acts("jump", "", {t: x for t, x in off.items() if slow[t]}, s.fps):
         first, last = (round(x * s.fps) for x in (jumps.first, jumps.last))
         gone = s.ahead[first : last + 1].sum() / s.fps
         ahead = gone > 0.16 * jumps.count
@@ -168,9 +168,9 @@ def on_the_spot(s: Signals) -> list[Recognised]:
     for k, side in enumerate(SIDES):
         high = peaks(s.toes[:, k], 0.3, 0.2, s.fps)
         ahead = {t: x for t, x in high.items() if s.feet_ahead[t, k] > 0.3 and slow[t]}
-        found += counted("kick", side, ahead, s.fps)
+        found += repeated_acts("kick", side, ahead, s.fps)
     bent = peaks(s.lean, np.radians(31.0), np.radians(14.0), s.fps)
-    found += counted("bow", "", {t: x for t, x in bent.items() if s.pelvis[t] > 0.85}, s.fps)
+    found += repeated_acts("bow", "", {t: x for t, x in bent.items() if s.pelvis[t] > 0.85}, s.fps)
     return found
 
 
@@ -193,7 +193,7 @@ def peaks(
     return {int(t) - 1: tuple(pair) for t, pair in zip(at, times.tolist(), strict=True)}
 
 
-def counted(
+def repeated_acts(
     verb: str, side: str, at: dict[int, tuple[float, float]], fps: float
 ) -> list[Recognised]:
     """Runs of times of one act: those that follow one another evenly, and soon."""
@@ -221,11 +221,11 @@ def on_the_way(s: Signals, spot: list[Recognised]) -> list[Recognised]:
     turns = (np.abs(s.turning) > 0.6) & (s.ahead < 1.9)
     state[turns & (s.turning > 0)] = "turn left"
     state[turns & (s.turning < 0)] = "turn right"
-    state[during(spot, s)] = ""
+    state[frames_with(spot, s)] = ""
     found = []
     for word in ("walk", "run", "back", "aside left", "aside right", "turn left", "turn right"):
         verb, _, side = word.partition(" ")
-        for first, last in joined(state == word, 0.3 * s.fps):
+        for first, last in runs_over_gaps(state == word, 0.3 * s.fps):
             seconds = (last - first) / s.fps
             if verb == "turn":
                 beside = slice(max(0, first - round(0.3 * s.fps)), last + round(0.3 * s.fps))
@@ -241,7 +241,7 @@ def on_the_way(s: Signals, spot: list[Recognised]) -> list[Recognised]:
     return without_passages(found)
 
 
-def during(acts: list[Recognised], s: Signals) -> Bool[np.ndarray, "T"]:
+def frames_with(acts: list[Recognised], s: Signals) -> Bool[np.ndarray, "T"]:
     """The frames of these acts."""
     mask = np.zeros(len(s.ahead), bool)
     for one in acts:
@@ -249,7 +249,7 @@ def during(acts: list[Recognised], s: Signals) -> Bool[np.ndarray, "T"]:
     return mask
 
 
-def joined(mask: Bool[np.ndarray, "T"], gap: float) -> list[tuple[int, int]]:
+def runs_over_gaps(mask: Bool[np.ndarray, "T"], gap: float) -> list[tuple[int, int]]:
     """Runs of True, where gaps of up to `gap` frames count as True."""
     found: list[tuple[int, int]] = []
     for first, last in runs(mask).tolist():
@@ -280,7 +280,7 @@ def of_the_arms(s: Signals, spot: list[Recognised]) -> list[Recognised]:
     for one in spot:
         if one.verb in ("jump", "kick", "bow"):
             free[max(0, round((one.first - 0.2) * s.fps)) : round((one.last + 0.4) * s.fps)] = False
-    busy = during([one for one in spot if one.verb in ("squat", "sit")], s)
+    busy = frames_with([one for one in spot if one.verb in ("squat", "sit")], s)
     out, up, front = np.moveaxis(s.hands, -1, 0)
     found = []
     rising = np.gradient(up, 1 / s.fps, axis=0)
@@ -288,21 +288,21 @@ def of_the_arms(s: Signals, spot: list[Recognised]) -> list[Recognised]:
     alike = np.abs(forth[:, 0] - forth[:, 1]) < 0.8  # m/s: the arms of a runner are not
     near = peaks(-s.apart, -0.22, 0.2, s.fps)
     near = {t: x for t, x in near.items() if front[t].min() > 0.27 and free[t] and alike[t]}
-    found += counted("clap", "", near, s.fps)
-    claps = during(found, s)
+    found += repeated_acts("clap", "", near, s.fps)
+    claps = frames_with(found, s)
     level = (s.reach > 0.44) & (np.abs(up) < 0.34)
     high = [{t: x for t, x in peaks(up[:, k], 0.38, 0.2, s.fps).items() if free[t]} for k in (0, 1)]
     both = {t: x for t, x in high[0].items() if any(abs(t - u) < 0.3 * s.fps for u in high[1])}
     paired = [u for u in high[1] if any(abs(t - u) < 0.3 * s.fps for t in both)]
-    found += counted("raise", "both", both, s.fps)
+    found += repeated_acts("raise", "both", both, s.fps)
     for k, side in enumerate(SIDES):
         alone = {t: x for t, x in high[k].items() if t not in (*both, *paired)}
-        found += counted("raise", side, alone, s.fps)
+        found += repeated_acts("raise", side, alone, s.fps)
         other = 1 - k
         shows = free & (s.reach[:, k] > 0.47) & (np.abs(up[:, k]) < 0.24) & ~claps
         for direction, ahead in (("forward", front), ("aside", out)):
             alone = shows & (ahead[:, k] > 0.4) & ~(level[:, other] & (ahead[:, other] > 0.3))
-            for first, last in joined(alone, 0.2 * s.fps):
+            for first, last in runs_over_gaps(alone, 0.2 * s.fps):
                 # who squats or sits holds the arms ahead for a moment
                 least = 1.25 if busy[first:last].any() else 0.75
                 if last - first >= least * s.fps:
@@ -322,7 +322,7 @@ def of_the_arms(s: Signals, spot: list[Recognised]) -> list[Recognised]:
             and s.reach[max(0, t - reach_back) : t + reach_back, k].min() < 0.45
             and not any(one.first - 0.2 < t / s.fps < one.last + 0.2 for one in held)
         }
-        found += counted("punch", side, hits, s.fps)
+        found += repeated_acts("punch", side, hits, s.fps)
         found += waves(s, k, free)
     return found
 
@@ -332,7 +332,7 @@ def waves(s: Signals, k: int, free: Bool[np.ndarray, "T"]) -> list[Recognised]:
     out, up, _ = np.moveaxis(s.hands[:, k], -1, 0)
     beside = free & (up > 0.08) & (out > 0.1) & (s.reach[:, k] < 0.46)
     found = []
-    for first, last in joined(beside, 0.25 * s.fps):
+    for first, last in runs_over_gaps(beside, 0.25 * s.fps):
         swing = np.diff(out[first:last])
         changes = int((np.diff(np.sign(swing)) != 0).sum())
         if last - first >= 0.8 * s.fps and changes >= 2 and np.ptp(out[first:last]) > 0.05:

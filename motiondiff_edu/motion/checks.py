@@ -12,6 +12,14 @@ MOST_SAMPLES = 256  # made at once, in memory
 GUIDANCE = 20  # the largest weight; figures break long before it
 
 
+class MotionError(ValueError):
+    """A motion or its file cannot be used; the message says what is wrong, where, what to do."""
+
+
+class MotionWarning(UserWarning):
+    """Something was corrected or looks wrong; the motion is usable."""
+
+
 def is_number(value: object) -> bool:
     """Whether a value is a real number; True and False are none."""
     return isinstance(value, Real) and not isinstance(value, bool)

@@ -35,7 +35,7 @@ import scipy
 from jaxtyping import Bool, Float, Int
 
 from .dance_frame import GROUND
-from .directions import UP, build, plain_directions, unit
+from .directions import UP, plain_directions, positions_from, unit
 from .inverse_kinematics import ankles_moved
 from .skeleton import BONE_LENGTHS, BONES, HEELS, HIPS, OFFSETS, PARENTS, TOES, joint_index
 
@@ -55,14 +55,14 @@ def blend_seams(
     for first, last in runs(~np.any(known, axis=1)).tolist():
         new = made[first:last]
         if first > 1 and whole[first - 1]:
-            new = continued(positions[first - 2 : first], new, fps)
+            new = continue_smoothly(positions[first - 2 : first], new, fps)
         if last < len(made) - 1 and whole[last]:
-            new = continued(positions[last : last + 2][::-1], new[::-1], fps)[::-1]
+            new = continue_smoothly(positions[last : last + 2][::-1], new[::-1], fps)[::-1]
         made[first:last] = new
     return made
 
 
-def continued(
+def continue_smoothly(
     past: Float[np.ndarray, "2 21 3"], new: Float[np.ndarray, "T 21 3"], fps: float
 ) -> Float[np.ndarray, "T 21 3"]:
     """`new` poses that go on from the given pose `past[1]` without a jump (metres)."""
@@ -73,7 +73,7 @@ def continued(
     lengths = np.linalg.norm(new[:n, 1:] - new[:n, parents], axis=-1).T
     hips = new[:n, HIPS] + correction(past[:, HIPS], new[:n, HIPS])
     bones = unit(bones + correction(plain_directions(past), bones))
-    return np.concatenate([build(hips, bones, lengths), new[n:]])
+    return np.concatenate([positions_from(hips, bones, lengths), new[n:]])
 
 
 def seconds_for(past: Float[np.ndarray, "2 21 3"], new: Float[np.ndarray, "T 21 3"]) -> float:
@@ -92,10 +92,10 @@ def correction(
     """
     before, after = past[1] - past[0], new[1] - new[0]
     step = (before + after) / 2
-    return fading(past[1] + step - new[0], step - after, len(new))
+    return fade_out(past[1] + step - new[0], step - after, len(new))
 
 
-def fading(
+def fade_out(
     offset: Float[np.ndarray, "*J 3"], speed: Float[np.ndarray, "*J 3"], n: int
 ) -> Float[np.ndarray, "n *J 3"]:
     """`offset` at frame 0, changing by `speed` a frame there; from frame n on it would be 0.
@@ -309,7 +309,7 @@ def toe_path(
     """
     shift, anchored = np.zeros_like(toe), given.copy()
     for first, last in runs(standing):
-        back = (place_of(toe[first:last], given[first:last]) - toe[first:last]) * GROUND
+        back = (standing_place(toe[first:last], given[first:last]) - toe[first:last]) * GROUND
         if np.linalg.norm(back, axis=-1).max() > FARTHEST:
             continue
         shift[first:last] = back
@@ -325,7 +325,7 @@ def toe_path(
     return path
 
 
-def place_of(
+def standing_place(
     toe: Float[np.ndarray, "n 3"], given: Bool[np.ndarray, " n"]
 ) -> Float[np.ndarray, "#n 3"]:
     """Where a standing toe stays: its median place, or lines between the given places."""

@@ -34,7 +34,7 @@ def frame_of(
     return np.stack([x, np.cross(z, x), z], axis=-1)
 
 
-def calibrated(
+def calibrate(
     direction: Float[np.ndarray, "T 3"],
     frame: Float[np.ndarray, "T 3 3"],
     target: Float[np.ndarray, "3"],
@@ -127,7 +127,7 @@ def bone_directions(
     directions[:, SPINE1] = unit(pelvis[..., 1] + chest[..., 1])
     directions[:, NECK] = chest[..., 1]
     for joint in (HEAD, *ARMS):
-        directions[:, joint] = calibrated(points[:, joint] - points[:, NECK], chest, OFFSETS[joint])
+        directions[:, joint] = calibrate(points[:, joint] - points[:, NECK], chest, OFFSETS[joint])
     for side, (heel, toe) in enumerate(zip(HEELS, TOES, strict=True)):
         shank = points[:, heel - 1] - points[:, heel]
         directions[:, toe] = foot_direction(
@@ -162,8 +162,8 @@ def trunk_frames(points: Float[np.ndarray, "T 21 3"], lean: float) -> tuple[np.n
     trunk = shoulders - hips
     middle = mid_trunk(points, hips, trunk)
     up = rot_x(lean)[:, 1]
-    lower = calibrated(middle - hips, frame_of(across_hips, trunk), up)
-    upper = calibrated(shoulders - middle, frame_of(across_chest, trunk), up)
+    lower = calibrate(middle - hips, frame_of(across_hips, trunk), up)
+    upper = calibrate(shoulders - middle, frame_of(across_chest, trunk), up)
     return frame_of(across_hips, lower), frame_of(across_chest, upper)
 
 
@@ -205,7 +205,7 @@ def foot_direction(
     return scipy.spatial.transform.Rotation.from_rotvec(across * (FLAT_PITCH - flat)).apply(foot)
 
 
-def build(
+def positions_from(
     hips: Float[np.ndarray, "T 3"],
     directions: Float[np.ndarray, "T 21 3"],
     lengths: Float[np.ndarray, "20 *T"] = BONE_LENGTHS,

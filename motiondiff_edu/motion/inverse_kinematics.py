@@ -45,14 +45,14 @@ def drag(pose: Pose, joint: int, target: Point) -> Pose:
         return ankles_dragged(pose[None], joint, target[None])[0]
     chain = chain_to(joint)
     if chain[0] == HIPS:
-        return carried(pose, chain, fabrik(pose[chain], target))
+        return move_chain(pose, chain, fabrik(pose[chain], target))
     if len(chain) == 2:
-        return carried(
+        return move_chain(
             pose, chain, np.stack([pose[chain[0]], pose[chain[0]] + _bone(pose, chain, target)])
         )
-    solve = two_bones if len(chain) == 3 else towed
+    solve = two_bones if len(chain) == 3 else tow_limb
     bends = bends_to(pose[None], chain[0])[0]
-    return carried(pose, chain, solve(pose[chain], target, bends))
+    return move_chain(pose, chain, solve(pose[chain], target, bends))
 
 
 def check_target(joint: int, target: Float[np.ndarray, "*T 3"]) -> None:
@@ -160,7 +160,7 @@ def ankles_moved(
     return ankles_dragged(poses, heel, poses[:, heel] + by)
 
 
-def towed(
+def tow_limb(
     limb: Float[np.ndarray, "4 3"], target: Point, bends: Float[np.ndarray, "2 3"]
 ) -> Float[np.ndarray, "4 3"]:
     """Two bones and a hand or foot: its tip moves to the target, and the rest follows the tip."""
@@ -205,7 +205,7 @@ def fabrik(
     return places
 
 
-def carried(pose: Pose, chain: list[int], places: Float[np.ndarray, "N 3"]) -> Pose:
+def move_chain(pose: Pose, chain: list[int], places: Float[np.ndarray, "N 3"]) -> Pose:
     """The pose with a chain at new places; joints below turn with the bone that carries them."""
     moved = np.array(pose)
     for k in range(1, len(chain)):

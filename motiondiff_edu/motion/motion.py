@@ -16,24 +16,17 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float
 
-from . import recordings, registry
+from . import registry
 from .check import lies_down, unlike_a_body
-from .checks import checked_rate, is_number
+from .checks import MotionError, MotionWarning, checked_rate, is_number
 from .clip import Clip
 from .faults import WILD
+from .recordings import recordings
 from .resample import resample_present
 from .root_frame import FPS, control_from_path, estimate_root, root_path, to_root_frame
 from .skeleton import COURSE, Skeleton
 
 FARTHEST = 1e6  # metres from the origin; a larger value is a fault of the file
-
-
-class MotionError(ValueError):
-    """A motion or its file cannot be used; the message says what is wrong, where, what to do."""
-
-
-class MotionWarning(UserWarning):
-    """Something was corrected or looks wrong; the motion is usable."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,25 +82,20 @@ class Motion:
 
         Raises MotionError for a missing joint, another skeleton, or a single frame.
         """
-        root = self._path()
+        root = self.path()
         poses, control = to_root_frame(self.positions, root[:, :2], root[:, 2], self.fps)
         return Clip(poses, control, self.fps, self.contacts, self.source)
 
-    def rooted(self) -> "Motion":
-        """The same motion with a `root`: its own, or the smoothed pelvis on the ground.
+    def path(self) -> Float[np.ndarray, "T 3"]:
+        """The root in each frame (x, z, heading): `root`, or the smoothed pelvis on the ground.
 
         Raises MotionError as `to_clip` does.
         """
         self.check_whole()
         if self.root is not None:
-            return self
+            return self.root
         place, heading = estimate_root(self.positions, self.fps)
-        return replace(self, root=np.concatenate([place, heading[:, None]], axis=1))
-
-    def _path(self) -> Float[np.ndarray, "T 3"]:
-        path = self.rooted().root
-        assert path is not None  # `rooted` sees to it
-        return path
+        return np.column_stack([place, heading])
 
     @property
     def control(self) -> Float[np.ndarray, "T 3"]:
@@ -115,7 +103,7 @@ class Motion:
 
         Raises MotionError as `to_clip` does.
         """
-        root = self._path()
+        root = self.path()
         return control_from_path(root[:, :2], root[:, 2], self.fps)
 
     @property
@@ -311,10 +299,8 @@ class Motion:
         """
         path = checked_path(path)
         write = registry.writers.get(check_ending(path))
-        if not overwrite:
-            check_no_recording(path)
-        write(self, path)  # type: ignore[misc]  # check_ending knows the endings with a writer
-        recordings.note_written(path)
+        with recordings.writing(path, overwrite):
+            write(self, path)  # type: ignore[misc]  # check_ending knows the endings with a writer
         return path
 
     def __repr__(self) -> str:
@@ -355,15 +341,6 @@ def checked_path(path: str | Path) -> Path:
     if path.is_dir():
         raise MotionError(f"{path} is a folder; give the name of a file in it")
     return path
-
-
-def check_no_recording(path: Path) -> None:
-    """Raise MotionError for a file that was read, and that this process did not write."""
-    if recordings.is_recording(path):
-        raise MotionError(
-            f"{path} was read, and it would be lost: choose another name, or save it with "
-            "overwrite=True"
-        )
 
 
 def check_ending(path: str | Path) -> str:

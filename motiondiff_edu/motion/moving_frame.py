@@ -66,7 +66,7 @@ def moves(features: Float[Tensor, "*B T 66"]) -> Float[Tensor, "*B T2 21 3"]:
     return poses.diff(dim=-3) + root[..., None, :]
 
 
-def mirrored(features: Float[Tensor, "*B T 66"]) -> Float[Tensor, "*B T 66"]:
+def mirror_features(features: Float[Tensor, "*B T 66"]) -> Float[Tensor, "*B T 66"]:
     """The features of the mirrored motion: left and right are exchanged."""
     poses = features[..., : 3 * J].unflatten(-1, (J, 3))[..., list(MIRROR), :]
     poses = poses * poses.new_tensor([-1.0, 1.0, 1.0])

@@ -4,35 +4,52 @@
 process wrote, and nobody changed since, can be read back and written again.
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-_read: set[Path] = set()
-_written: dict[Path, tuple[int, int]] = {}  # as `_stamp` saw it after it was written
+from .checks import MotionError
 
 
-def note_read(path: Path) -> None:
-    """Remember that a file was read."""
-    place = _place(path)
-    if _written.get(place) != _stamp(place):
-        _read.add(place)
+class Recordings:
+    """The files that were read, and those that were written, as they were then."""
+
+    def __init__(self) -> None:
+        self._read: set[Path] = set()
+        self._written: dict[Path, tuple[int, int]] = {}
+
+    def note_read(self, path: Path) -> None:
+        """Remember that a file was read."""
+        if not self.is_ours(path):
+            self._read.add(_place(path))
+
+    @contextmanager
+    def writing(self, path: Path, overwrite: bool) -> Iterator[None]:
+        """Inside, the file is written: then nothing of a recording is left in it.
+
+        Raises MotionError for a recording, unless `overwrite`.
+        """
+        if path in self and not overwrite:
+            raise MotionError(
+                f"{path} was read, and it would be lost: choose another name, or save it with "
+                "overwrite=True"
+            )
+        yield
+        place = _place(path)
+        self._read.discard(place)
+        self._written[place] = _stamp(place)
+
+    def __contains__(self, path: Path) -> bool:
+        """Whether a recording would be lost if this file were replaced."""
+        return _place(path) in self._read
+
+    def is_ours(self, path: Path) -> bool:
+        """Whether this process wrote the file that is there, and nobody changed it since."""
+        place = _place(path)
+        return place.exists() and self._written.get(place) == _stamp(place)
 
 
-def note_written(path: Path) -> None:
-    """Remember that a file was written by this process: nothing of a recording is left in it."""
-    place = _place(path)
-    _read.discard(place)
-    _written[place] = _stamp(place)
-
-
-def is_recording(path: Path) -> bool:
-    """Whether a recording would be lost if this file were replaced."""
-    return _place(path) in _read
-
-
-def is_ours(path: Path) -> bool:
-    """Whether this process wrote the file that is there, and nobody changed it since."""
-    place = _place(path)
-    return place.exists() and _written.get(place) == _stamp(place)
+recordings = Recordings()  # of this process, for every motion that is read or saved
 
 
 def _place(path: Path) -> Path:

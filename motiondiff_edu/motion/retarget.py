@@ -16,10 +16,10 @@ from .clip import Clip
 from .directions import (
     UPLEGS,
     bone_directions,
-    build,
     complete,
     has_our_bones,
     plain_directions,
+    positions_from,
     rest_lean,
 )
 from .faults import WILD, wild_joints
@@ -105,7 +105,7 @@ def retarget_figure(figure: Figure, fps: float | int = 20.0, info: dict | None =
         raise BvhError(
             f"fps must be a positive number of frames a second, not {fps:g}.", figure.source
         )
-    points, found = normalised(figure, fps)
+    points, found = normalise_figure(figure, fps)
     world, contacts = onto_our_bones(points, found["rest_lean"], fps)
     warn_sunk(world, fps, figure.source, found["notes"])
     root, heading = estimate_root(world, fps)
@@ -121,7 +121,7 @@ def retarget_figure(figure: Figure, fps: float | int = 20.0, info: dict | None =
     )
 
 
-def normalised(figure: Figure, fps: float) -> tuple[Float[np.ndarray, "T 21 3"], dict]:
+def normalise_figure(figure: Figure, fps: float) -> tuple[Float[np.ndarray, "T 21 3"], dict]:
     """The figure in metres, y up, at `fps`, on a level floor; and a record of the corrections."""
     points, rest = figure.points, figure.rest
     notes: list[str] = []
@@ -193,8 +193,8 @@ def onto_our_bones(
     """
     contacts = find_contacts(ground_points(points), fps)
     if has_our_bones(points):
-        return build(points[:, HIPS], plain_directions(points)), contacts
-    raw = build(points[:, HIPS], bone_directions(points, flat_feet(points, fps), lean))
+        return positions_from(points[:, HIPS], plain_directions(points)), contacts
+    raw = positions_from(points[:, HIPS], bone_directions(points, flat_feet(points, fps), lean))
     raw += (points[:, UPLEGS].mean(1) - raw[:, UPLEGS].mean(1))[:, None]
     standing = raw[:, list(TOES), 1][contacts]
     raw[..., 1] -= np.median(standing) if len(standing) else np.percentile(raw[:, list(TOES), 1], 2)

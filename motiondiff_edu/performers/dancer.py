@@ -11,13 +11,13 @@ from typing import BinaryIO
 import numpy as np
 import torch
 from jaxtyping import Float
-from torch import Tensor, nn
+from torch import Tensor
 
 from ..beyond.classifier_free import guided_by_condition, while_between, without
 from ..beyond.guidance import with_guess
 from ..conditions.audio_files import SILENT, AudioError, samples_of
 from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, fingerprint, frame_times, log_mel
-from ..ddpm import Denoiser, Generators, Schedule, draw
+from ..ddpm import Denoiser, Generators, draw
 from ..mofusion import MoFusion, MoFusionConfig, Music
 from ..motion.checks import (
     checked_guidance,
@@ -32,8 +32,8 @@ from ..motion.motion import Motion, MotionWarning
 from ..motion.retarget import SHORTEST
 from ..motion.scaler import Scaler
 from .dance_windows import FPS, mel_frames
-from .networks import register
-from .performer import Performer, Watch, bar, evaluating, generators, sampled
+from .networks import DancerNetwork, register
+from .performer import Performer, Watch, bar, evaluating, generators, sample_motion
 
 STEPS, ETA = 50, 1.0  # defaults of DDIM; with less fresh noise, dances to a song differ less
 # chosen on other songs than those of docs/RESULTS.md
@@ -52,8 +52,7 @@ register("dancer", MoFusion, MoFusionConfig)
 class Dancer(Performer):
     """A network, and the scalers that convert metres and log-Mel to its units and back."""
 
-    model: nn.Module
-    schedule: Schedule
+    model: DancerNetwork
     motion_scaler: Scaler
     mel_scaler: Scaler
     card: dict = field(default_factory=dict)
@@ -141,7 +140,7 @@ class Dancer(Performer):
 
     def _to(self, music: Music | None, frames: int) -> Denoiser:
         """The denoiser for music that the network has listened to already."""
-        return self._denoiser(self.model.decode, self._encoded(self.model, music, frames))
+        return self._denoiser(self.model.decode, self._encoded(self.model.encode, music, frames))
 
     def _clamped(self, denoise: Denoiser) -> Denoiser:
         if self.config.target != "eps":
@@ -183,33 +182,8 @@ class Dancer(Performer):
         longest = None if seconds is None else round(checked_seconds(seconds) * SAMPLE_RATE)
         audio = samples_of(sound, sample_rate)[:longest]
         name = Path(sound).stem if isinstance(sound, (str, Path)) else "the sound given"
-        lasts = len(audio) / SAMPLE_RATE
-        frames = int(lasts * FPS)
-        if lasts < SHORTEST:
-            raise ValueError(
-                f"{lasts:.3f} s of sound are too short: at least {SHORTEST} s are needed"
-            )
-        if seconds is not None and lasts < seconds - 1 / FPS:
-            warnings.warn(
-                f"{name} lasts {lasts:.1f} s, and the dance ends with it",
-                MotionWarning,
-                stacklevel=2,
-            )
-        heard, peak = audio, float(audio.abs().max())
-        if peak < SILENT:
-            raise AudioError(
-                f"{name} is silent in its first {lasts:.1f} s, so there is nothing to dance to: "
-                "use more seconds of it"
-            )
-        if peak < QUIET:
-            warnings.warn(
-                f"{name} is very quiet (its loudest sample is {peak:.1g} of the largest there is), "
-                "so it is danced to as if it were louder",
-                MotionWarning,
-                stacklevel=2,
-            )
-            heard = audio * LOUD / peak
-        mel = log_mel(heard, SAMPLE_RATE)
+        frames = int(len(audio) / SAMPLE_RATE * FPS)
+        mel = log_mel(audible(audio, name, seconds), SAMPLE_RATE)
         draws = generators(seed, count, *fingerprint(mel))
         dances = self.dance_mel(
             mel.expand(count, -1, -1),
@@ -264,7 +238,7 @@ class Dancer(Performer):
         denoise = self.denoiser(mel, frames, guidance)
         where = self.motion_scaler.mean.new_empty(len(mel), frames, self.config.D)
         x_S = draw(where, generator) if start is None else start.to(self.device)
-        x0 = sampled(denoise, x_S, self.schedule, steps, eta, generator, watch)
+        x0 = sample_motion(denoise, x_S, self.schedule, steps, eta, generator, watch)
         return to_positions(self.motion_scaler.inverse(x0))
 
     def _regress(self, mel: Float[Tensor, "B M C"], frames: int) -> Float[Tensor, "B T 21 3"]:
@@ -274,6 +248,36 @@ class Dancer(Performer):
         with evaluating(self.model):
             out = self.model(nothing, s, self.model.listen(*self.mel_input(mel, frames)))
         return to_positions(self.motion_scaler.inverse(out))
+
+
+def audible(
+    audio: Float[Tensor, "N"], name: str, seconds: float | None = None
+) -> Float[Tensor, "N"]:
+    """A sound as it is danced to: a very quiet one is made louder, with a MotionWarning.
+
+    Another one says where it is shorter than `seconds`.
+    Raises AudioError for silence, ValueError for a sound that is too short for a motion.
+    """
+    lasts, peak = len(audio) / SAMPLE_RATE, float(audio.abs().max())
+    if lasts < SHORTEST:
+        raise ValueError(f"{lasts:.3f} s of sound are too short: at least {SHORTEST} s are needed")
+    if peak < SILENT:
+        raise AudioError(
+            f"{name} is silent in its first {lasts:.1f} s, so there is nothing to dance to: "
+            "use more seconds of it"
+        )
+    notes = []
+    if seconds is not None and lasts < seconds - 1 / FPS:
+        notes.append(f"{name} lasts {lasts:.1f} s, and the dance ends with it")
+    if peak < QUIET:
+        notes.append(
+            f"{name} is very quiet (its loudest sample is {peak:.1g} of the largest there is), "
+            "so it is danced to as if it were louder"
+        )
+        audio = audio * LOUD / peak
+    for note in notes:
+        warnings.warn(note, MotionWarning, stacklevel=3)
+    return audio
 
 
 def checked_frames(mel: Float[Tensor, "B M C"], frames: int | None) -> int:

@@ -14,9 +14,9 @@ from jaxtyping import Bool, Float, Int
 from torch import Tensor
 
 from ..beyond import timeline
-from ..conditions.text import read
+from ..conditions.text import read_words
 from ..conditions.word_encoder import NOTHING, PADDING, ids_of
-from ..motion.moving_frame import D, mirrored, to_features
+from ..motion.moving_frame import D, mirror_features, to_features
 from ..motion.scaler import Scaler
 
 GRID = 8  # frames: lengths are cut to multiples of it
@@ -54,7 +54,7 @@ class DescribedWindows:
 
         Raises ValueError for lists of different lengths, and TextError for unknown words.
         """
-        texts = [[read(text, words, {}).words for text in each] for each in captions]
+        texts = [[read_words(text, words, {}).words for text in each] for each in captions]
         return cls._of(positions, contacts, texts, words, timelines)
 
     @classmethod
@@ -140,7 +140,7 @@ class DescribedWindows:
         n, turned = chosen.length, chosen.turned
         x, planted = self.motions[n][chosen.which], self.contacts[n][chosen.which]
         ids = self.captions[n][chosen.which, chosen.wording]
-        other = torch.cat([mirrored(x[..., :D]), timeline.mirrored(x[..., D:])], -1)
+        other = torch.cat([mirror_features(x[..., :D]), timeline.mirrored(x[..., D:])], -1)
         x = torch.where(turned[:, None, None], other, x)
         planted = planted.where(~turned[:, None, None], planted.flip(-1))
         ids = torch.where(turned[:, None], self.exchanged[ids], ids)

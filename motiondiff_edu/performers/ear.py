@@ -8,7 +8,9 @@ Ours; see `beyond.hearing`.  Notebook: 12
 """
 
 import copy
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
 
 import torch
 from jaxtyping import Bool, Float
@@ -46,9 +48,6 @@ class EarConfig:
             raise ValueError(
                 f"the width must be a multiple of 2 x {self.heads} heads, not {self.width}"
             )
-
-    def as_dict(self) -> dict:
-        return asdict(self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +96,8 @@ class Ear(nn.Module):
         angles = angles_of(
             times[:: self.stride], config.width // config.heads, config.slowest, config.fastest
         )
-        for block in self.blocks:
+        blocks: Iterable[Any] = self.blocks  # torch's stubs say of a list that it holds Modules
+        for block in blocks:
             tokens = in_parts(block, tokens, angles, seen)
         return self.norm(tokens)
 
@@ -134,7 +134,7 @@ def in_parts(
     return torch.cat(made, 1)
 
 
-def rescaled(ear: Ear, own: Scaler, other: Scaler) -> Ear:
+def rescale_ear(ear: Ear, own: Scaler, other: Scaler) -> Ear:
     """An ear made for Mel frames standardised by `own` as one for frames standardised by `other`.
 
     Both hear the same: its first layer is linear, and so is the change of units.
@@ -142,6 +142,6 @@ def rescaled(ear: Ear, own: Scaler, other: Scaler) -> Ear:
     other_ear = copy.deepcopy(ear)
     first = other_ear.music.project
     with torch.no_grad():
-        first.bias += first.weight @ ((other.mean - own.mean) / own.std)
-        first.weight *= other.std / own.std
+        first.bias.add_(first.weight @ ((other.mean - own.mean) / own.std))
+        first.weight.mul_(other.std / own.std)
     return other_ear

@@ -1,4 +1,4 @@
-"""MoFusion with an ear, and what any network with an ear has (`baselines/hearing_transformer.py`).
+"""MoFusion with an ear, and what any network with an ear has (`baselines/transformer.py`).
 
 Their music is that of their own encoder, plus a linear layer of the ear's tokens. The ear does not
 change while they learn to dance.
@@ -20,11 +20,12 @@ class EarSizes:
     """The ear that belongs to a network's configuration."""
 
     C: int
+    music_layers: int
     ear_width: int
     ear_blocks: int
 
-    def __post_init__(self):
-        super().__post_init__()
+    def check_ear(self) -> None:
+        """Raise ValueError for a network that does not halve its music, as the ear does."""
         if not self.music_layers:
             raise ValueError("music_layers must be 1 or more: the ear halves the music, too")
 
@@ -40,23 +41,29 @@ class HearingConfig(EarSizes, MoFusionConfig):
     ear_width: int = 96
     ear_blocks: int = 4
 
+    def __post_init__(self):
+        super().__post_init__()
+        self.check_ear()
+
 
 class WithEar:
-    """What both networks add to `listen`."""
+    """An ear that is not trained, and the layer through which a network hears its tokens."""
+
+    ear: Ear
+    from_ear: nn.Linear
 
     def with_ear(self, config: EarConfig, width: int) -> None:
-        """Make an ear that is not trained, and the layer through which its tokens are heard."""
         self.ear = Ear(config).requires_grad_(False)
         self.from_ear = nn.Linear(config.width, width)
 
-    def listen(
+    def add_ear(
         self,
+        music: Music,
         mel: Float[Tensor, "B M C"],
         times: Float[Tensor, "M"],
-        mask: Bool[Tensor, "B M"] | None = None,
+        mask: Bool[Tensor, "B M"] | None,
     ) -> Music:
-        """The context of a piece of music, as in MoFusion.listen."""
-        music = super().listen(mel, times, mask)
+        """The network's own tokens of a piece of music, with those of the ear added."""
         with torch.no_grad():
             tokens = self.ear(mel, times, mask)
         return replace(music, tokens=music.tokens + self.from_ear(tokens))
@@ -67,7 +74,10 @@ class HearingMoFusion(WithEar, MoFusion):
 
     def __init__(self, config: HearingConfig):
         super().__init__(config)
-        self.with_ear(config.ear, self.music.project.out_features)
+        self.with_ear(config.ear, config.context_width)
+
+    def listen(self, mel: Tensor, times: Tensor, mask: Tensor | None = None) -> Music:
+        return self.add_ear(super().listen(mel, times, mask), mel, times, mask)
 
 
 register("dancer", HearingMoFusion, HearingConfig)

@@ -21,7 +21,7 @@ from torch import Tensor, nn
 from ..beyond.activity import USED_AT_MOST, with_activity
 from ..beyond.around_lines import GivenLines
 from ..beyond.turning_frame import TurningFrame
-from ..ddpm import Denoiser, Generators, Schedule, draw, final
+from ..ddpm import Denoiser, Generators, draw, final
 from ..inbetweening import inpaint_steps
 from ..mofusion import MoFusion, MoFusionConfig
 from ..motion.known import checked_given, given_features, with_given
@@ -101,8 +101,7 @@ class Inbetweener(Performer):
     Source: MoFusion 4.4.
     """
 
-    model: nn.Module
-    schedule: Schedule
+    model: KeyframeMoFusion
     motion_scaler: Scaler
     card: dict = field(default_factory=dict)
 
@@ -128,7 +127,7 @@ class Inbetweener(Performer):
         motion. The motion may be anywhere and face anywhere: the network sees it from its first
         known pose.
 
-        steps     of DDIM: how many, or which to visit (`inbetweening.resampled`)
+        steps     of DDIM: how many, or which to visit (`inbetweening.resampling_steps`)
         remainder factor on what the network adds to the lines; with 0 the result is the lines
         generator without one, the seed is 0
         watch     gets the sampling loop, and shows how far it is

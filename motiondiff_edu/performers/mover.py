@@ -10,14 +10,14 @@ from dataclasses import dataclass, field
 import numpy as np
 import torch
 from jaxtyping import Float
-from torch import Tensor, nn
+from torch import Tensor
 
 from ..beyond import timeline
 from ..beyond.classifier_free import guided_by_condition
-from ..conditions.clip import Clip, check
+from ..conditions.clip import ClipModel, check
 from ..conditions.text import Read
 from ..conditions.word_encoder import WordReader
-from ..ddpm import Denoiser, Generators, Schedule, draw
+from ..ddpm import Denoiser, Generators, draw
 from ..motion.checks import (
     checked_guidance,
     checked_samples,
@@ -32,9 +32,10 @@ from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 from ..motion.skeleton import BONE_LENGTHS
 from .described_windows import GRID
-from .performer import Performer, Watch, bar, evaluating, generators, sampled
+from .networks import MoverConfig, MoverNetwork
+from .performer import Performer, Watch, bar, evaluating, generators, sample_motion
 from .planned_mofusion import PlannedMoFusion
-from .text_mofusion import Texts
+from .text_mofusion import TextMoFusionConfig, Texts
 
 STEPS, ETA = 50, 0.5  # defaults of DDIM
 SECONDS = 6.0
@@ -59,28 +60,32 @@ class Mover(Performer):
     ClipError for another CLIP than that of the training.
     """
 
-    model: nn.Module
-    schedule: Schedule
+    model: MoverNetwork
     motion_scaler: Scaler
     card: dict = field(default_factory=dict)
-    clip: Clip | None = None
+    clip: ClipModel | None = None
 
     def __post_init__(self):
         super().__post_init__()
-        name = getattr(self.config, "clip", "")
-        if name and self.clip is None:
-            raise ValueError(f"the network reads by CLIP: pass clip=conditions.clip.load({name!r})")
-        if self.clip is not None and not name:
+        config = self.config
+        if isinstance(config, TextMoFusionConfig) and config.clip:
+            if self.clip is None:
+                how = f"pass clip=conditions.clip.load({config.clip!r})"
+                raise ValueError(f"the network reads by CLIP: {how}")
+            check(self.clip, config.clip_width, self.card.get("clip_sample"))
+        elif self.clip is not None:
             raise ValueError("the network reads words of its own, and takes no CLIP")
-        if self.clip is not None:
-            check(self.clip, self.config.clip_width, self.card.get("clip_sample"))
+
+    @property
+    def config(self) -> MoverConfig:
+        return self.model.config
 
     @property
     def device(self) -> torch.device:
         return self.motion_scaler.mean.device
 
     @property
-    def reader(self) -> WordReader | Clip:
+    def reader(self) -> WordReader | ClipModel:
         """How this network reads: `read(text)`, and `encoded(...)` for what the network takes."""
         return self.clip or WordReader(self.config.words)
 
@@ -109,7 +114,12 @@ class Mover(Performer):
         return self._guided(self.model, ids, frames, guidance, given.expand(len(ids), -1, -1))
 
     def plan_denoiser(self, ids: Texts, frames: int, guidance: float = 1.0) -> Denoiser:
-        """The same for timelines in the network's units, of a network that plans."""
+        """The same for timelines in the network's units.
+
+        Raises ValueError for a network that does not plan.
+        """
+        if not isinstance(self.model, PlannedMoFusion):
+            raise ValueError("this mover makes no plans")
         return self._guided(self.model.planner, ids, frames, guidance)
 
     def _plan(self, plan: Tensor | np.ndarray, texts: int, frames: int) -> Float[Tensor, "#B T 22"]:
@@ -125,7 +135,7 @@ class Mover(Performer):
         return made
 
     def _guided(
-        self, network: nn.Module, ids: Texts, frames: int, guidance: float, *plans: Tensor
+        self, network: MoverNetwork, ids: Texts, frames: int, guidance: float, *plans: Tensor
     ) -> Denoiser:
         """The denoiser of a network for these texts, away from no text if guidance is not 1."""
         guidance = checked_guidance(guidance)
@@ -164,7 +174,7 @@ class Mover(Performer):
         """
         denoise = self.plan_denoiser(ids, frames, guidance)
         x_S = self._noise((len(ids), frames, timeline.D), generator, start)
-        made = sampled(denoise, x_S, self.schedule, steps, eta, generator, watch)
+        made = sample_motion(denoise, x_S, self.schedule, steps, eta, generator, watch)
         return timeline.tidied(self.plan_scaler.inverse(made))
 
     def act(
@@ -208,11 +218,14 @@ class Mover(Performer):
         watch = bar("moving", (steps or self.schedule.S) + 1, progress)
         plan = None
         if self.can_plan:
-            how = {"generator": draws, "steps": steps, "guidance": guidance, "watch": watch}
-            plan = self.plans(ids, whole, **how)
+            plan = self.plans(
+                ids, whole, generator=draws, steps=steps, guidance=guidance, watch=watch
+            )
         denoise = self.denoiser(ids, whole, guidance, plan)
         x_S = self._noise((count, whole, D), draws, None)
-        made = self.positions_of(sampled(denoise, x_S, self.schedule, steps, ETA, draws, watch))
+        made = self.positions_of(
+            sample_motion(denoise, x_S, self.schedule, steps, ETA, draws, watch)
+        )
         source = f"{found.text:.60}"
         acts = made.double().cpu().numpy()
         clean = [clean_up(x, FPS, body=Body.of(x, bones=BONE_LENGTHS)) for x in acts]
@@ -240,11 +253,12 @@ class Mover(Performer):
         Raises ValueError for a plan of another length or shape.
         """
         if plan is None and self.can_plan:
-            how = {"generator": generator, "steps": steps, "eta": eta, "guidance": guidance}
-            plan = self.plans(ids, frames, **how)
+            plan = self.plans(
+                ids, frames, generator=generator, steps=steps, eta=eta, guidance=guidance
+            )
         denoise = self.denoiser(ids, frames, guidance, plan)
         x_S = self._noise((len(ids), frames, D), generator, start)
-        return self.positions_of(sampled(denoise, x_S, self.schedule, steps, eta, generator))
+        return self.positions_of(sample_motion(denoise, x_S, self.schedule, steps, eta, generator))
 
     def _noise(
         self, shape: tuple[int, ...], generator: Generators | None, start: Tensor | None

@@ -9,11 +9,15 @@ docs/EXTENDING.md has a complete example.
 Notebook: 07
 """
 
-from collections.abc import Callable
-from dataclasses import MISSING, dataclass, fields
-from typing import Protocol, runtime_checkable
+from collections.abc import Callable, Iterator
+from dataclasses import MISSING, Field, dataclass, fields
+from typing import Any, ClassVar, Protocol, Self, runtime_checkable
 
-from torch import nn
+import torch
+from torch import Tensor, nn
+
+from ..mofusion import Music
+from ..rollout import Sizes
 
 # the fields that samplers and scalers need in a configuration
 NEEDED = {
@@ -35,10 +39,92 @@ METHODS = {
 class Config(Protocol):
     """The widths of a pose (D) and of a condition's row (C), the diffusion steps S, the target."""
 
-    D: int
-    C: int
-    S: int
-    target: str
+    __dataclass_fields__: ClassVar[dict[str, Field]]
+
+    @property
+    def D(self) -> int: ...
+
+    @property
+    def C(self) -> int: ...
+
+    @property
+    def S(self) -> int: ...
+
+    @property
+    def target(self) -> str: ...
+
+
+@runtime_checkable
+class WalkerConfig(Config, Sizes, Protocol):
+    """The same, and the frames given (T_h) and predicted (T_p)."""
+
+
+@runtime_checkable
+class MoverConfig(Config, Protocol):
+    """The same, and the words that the network knows."""
+
+    @property
+    def words(self) -> tuple[str, ...]: ...
+
+
+@runtime_checkable
+class AnyNetwork(Protocol):
+    """A network with its configuration, and what performers use of torch's nn.Module."""
+
+    training: bool
+
+    def __call__(self, *inputs: Any) -> Any: ...
+
+    def eval(self) -> Any: ...
+
+    def modules(self) -> Iterator[nn.Module]: ...
+
+    def parameters(self) -> Iterator[nn.Parameter]: ...
+
+    def state_dict(self) -> dict[str, Any]: ...
+
+    def to(self, device: str | torch.device) -> Self: ...
+
+    @property
+    def config(self) -> Config: ...
+
+
+@runtime_checkable
+class WalkerNetwork(AnyNetwork, Protocol):
+    """A network for walkers; `register` says what the methods do."""
+
+    @property
+    def config(self) -> WalkerConfig: ...
+
+    def encode(self, past: Tensor, control: Tensor, /) -> Any: ...
+
+    def decode(self, x_s: Tensor, s: Tensor, memory: Any, /) -> Tensor: ...
+
+
+@runtime_checkable
+class DancerNetwork(AnyNetwork, Protocol):
+    """A network for dancers."""
+
+    def listen(self, mel: Tensor, times: Tensor, /) -> Music: ...
+
+    def encode(self, music: Any, frames: int, /) -> Any: ...
+
+    def decode(self, x_s: Tensor, s: Tensor, memory: Any, /) -> Tensor: ...
+
+
+@runtime_checkable
+class MoverNetwork(AnyNetwork, Protocol):
+    """A network for movers."""
+
+    def listen(self, texts: Any, /) -> Any: ...
+
+    def encode(self, context: Any, frames: int, /) -> Any: ...
+
+    @property
+    def decode(self) -> Callable[..., Tensor]: ...  # one that plans takes the plan as well
+
+    @property
+    def config(self) -> MoverConfig: ...
 
 
 @dataclass(frozen=True)
@@ -48,7 +134,7 @@ class Network:
     performer: str
     model: type[nn.Module]
     config: type
-    build: Callable[..., nn.Module]
+    build: Callable[..., Any]
 
 
 _NETWORKS: dict[str, Network] = {}
@@ -118,13 +204,13 @@ def networks_of(performer: str) -> dict[str, Network]:
     return {name: one for name, one in _NETWORKS.items() if one.performer == performer}
 
 
-def kind_of(model: nn.Module) -> Network | None:
+def kind_of(model: object) -> Network | None:
     """The registration of a network's class, or None."""
     found = _NETWORKS.get(type(model).__name__)
     return found if found and _full_name(found.model) == _full_name(type(model)) else None
 
 
-def network(config: Config, *scalers) -> nn.Module:
+def network(config: Config, *scalers) -> Any:
     """A new network for a configuration.
 
     Raises ValueError for a configuration without a registered network.

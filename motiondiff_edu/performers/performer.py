@@ -3,23 +3,23 @@
 import copy
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 import torch
 from jaxtyping import Float
-from torch import Tensor, nn
+from torch import Tensor
 from tqdm.auto import tqdm
 
 from ..ddpm import Denoiser, Generators, Schedule, Step, ddim_steps, final, sample_steps
 from ..motion.checks import checked_seed
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
-from .networks import Config
+from .networks import AnyNetwork, Config
 
-Own = TypeVar("Own")  # the class of a performer, or of one made of it
+Own = TypeVar("Own", bound="Performer")  # the class of a performer, or of one made of it
 Watch = Callable[[Iterable[Step]], Iterable[Step]]  # wraps a loop, as `bar` does
 
 
@@ -36,7 +36,7 @@ def generators(seed: int, count: int, *also: int) -> list[torch.Generator]:
     return [torch.Generator().manual_seed(one) for one in (seed, *further.tolist())]
 
 
-def sampled(
+def sample_motion(
     denoise: Denoiser,
     x_S: Float[Tensor, "B T D"],
     schedule: Schedule,
@@ -59,7 +59,7 @@ def sampled(
 
 
 @contextmanager
-def evaluating(model: nn.Module) -> Iterator[None]:
+def evaluating(model: AnyNetwork) -> Iterator[None]:
     """The network without dropout; afterwards the parts that were in training mode are so again."""
     # not every time: a change visits every layer
     training = [part for part in model.modules() if part.training] if model.training else []
@@ -72,13 +72,14 @@ def evaluating(model: nn.Module) -> Iterator[None]:
             part.training = True
 
 
+@dataclass(frozen=True, eq=False, repr=False)
 class Performer:
     """A trained network and its schedule; each kind of performer adds its units.
 
     Raises ValueError for a schedule with another number of steps than the network's.
     """
 
-    model: nn.Module
+    model: AnyNetwork
     schedule: Schedule
 
     def __post_init__(self):
@@ -108,7 +109,7 @@ class Performer:
     def to(self: Own, device: str | torch.device) -> Own:
         """The same performer on another device; it moves there what it is given."""
         units = {name: one for name, one in vars(self).items() if isinstance(one, Scaler)}
-        moved = {name: one.to(device) for name, one in units.items()}
+        moved: dict[str, Any] = {name: one.to(device) for name, one in units.items()}
         return replace(self, model=copy.deepcopy(self.model).to(device), **moved)
 
     @property
@@ -116,10 +117,10 @@ class Performer:
         return self.model.config
 
     @torch.no_grad()
-    def _encoded(self, network: nn.Module, *condition):
+    def _encoded(self, encode: Callable, *condition):
         """What the network computes of a condition, once for all steps; without dropout."""
-        with evaluating(network):
-            return network.encode(*condition)
+        with evaluating(self.model):
+            return encode(*condition)
 
     def _denoiser(self, network: Callable[..., Tensor], *given) -> Denoiser:
         """`network(x_s, s, *given)` in evaluation mode, as a denoiser: it returns eps_hat."""

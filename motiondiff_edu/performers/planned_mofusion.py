@@ -33,8 +33,7 @@ class PlannedConfig(TextMoFusionConfig):
 
     def of_the_plan(self) -> TextMoFusionConfig:
         """The configuration of the network for timelines."""
-        sizes = {"widths": self.plan_widths, "depth": self.plan_depth}
-        return replace(self.of_one(), D=timeline.D, **sizes)
+        return replace(self.of_one(), D=timeline.D, widths=self.plan_widths, depth=self.plan_depth)
 
 
 @dataclass(frozen=True, eq=False)

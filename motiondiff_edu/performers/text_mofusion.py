@@ -7,6 +7,7 @@ Source: MoFusion 3.3.
 """
 
 from dataclasses import dataclass
+from typing import Any, Protocol, runtime_checkable
 
 from jaxtyping import Float, Int
 from torch import Tensor, nn
@@ -52,16 +53,23 @@ class TextMoFusionConfig(MoFusionConfig):
             raise ValueError(f"a network reads words of its own or {self.clip}, not both")
 
 
+@runtime_checkable
+class TextEncoder(Protocol):
+    """What makes tokens of texts, and says where there is one; a module."""
+
+    def tokens_of(self, texts: Any, /) -> tuple[Tensor, Tensor]: ...
+
+
 class TextMoFusion(nn.Module):
     """eps_hat (or x0_hat) = net(x_s, s, text), for motions of any length.
 
-    words  what makes tokens of a text, by `tokens_of(texts)`; default: that of the configuration
+    words  what makes tokens of a text; default: that of the configuration
     """
 
-    def __init__(self, config: TextMoFusionConfig, words: nn.Module | None = None):
+    def __init__(self, config: TextMoFusionConfig, words: TextEncoder | None = None):
         super().__init__()
         self.config = config
-        self.words = words or encoder_of(config)
+        self.words: TextEncoder = words or encoder_of(config)
         self.unet = SelfAttendingMoFusion(config, depth=config.depth)
 
     def listen(self, texts: Texts) -> Music:
@@ -84,7 +92,7 @@ class TextMoFusion(nn.Module):
         return self.unet.decode(x_s, s, memory)
 
 
-def encoder_of(config: TextMoFusionConfig) -> WordEncoder | ClipEncoder:
+def encoder_of(config: TextMoFusionConfig) -> TextEncoder:
     """The part of the network that makes tokens of a text."""
     if config.clip:
         return ClipEncoder(config.clip_width, config.C)

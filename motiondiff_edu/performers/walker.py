@@ -10,12 +10,12 @@ from dataclasses import dataclass, field
 import numpy as np
 import torch
 from jaxtyping import Float
-from torch import Tensor, nn
+from torch import Tensor
 
 from .. import rollout
 from ..beyond.footholds import FootholdConfig, FootholdMoDiff
 from ..conditions.control import as_long
-from ..ddpm import Denoiser, Generators, Schedule, ddim_steps, draw, final, sample_steps
+from ..ddpm import Denoiser, Generators, ddim_steps, draw, final, sample_steps
 from ..modiff import MoDiff, MoDiffConfig
 from ..motion.check import lies_down
 from ..motion.checks import checked_samples, checked_seconds, checked_steps
@@ -24,8 +24,16 @@ from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 from ..motion.skeleton import J
 from ..rollout import WindowSampler
-from .joined import Start, change_of, in_words, joined, leg_size, resized, unlike_training
-from .networks import register
+from .continuation import (
+    Start,
+    change_of,
+    finish_continuation,
+    in_words,
+    leg_size,
+    resize_motion,
+    unlike_training,
+)
+from .networks import WalkerConfig, WalkerNetwork, register
 from .performer import Performer, bar, generators
 
 STEPS = 10  # default of DDIM: as good as DDPM with all steps, and ten times as fast (RESULTS)
@@ -43,11 +51,14 @@ class Walker(Performer):
     Source: MoDiff III.  Notebook: 07
     """
 
-    model: nn.Module
-    schedule: Schedule
+    model: WalkerNetwork
     pose_scaler: Scaler
     control_scaler: Scaler
     card: dict = field(default_factory=dict)
+
+    @property
+    def config(self) -> WalkerConfig:
+        return self.model.config
 
     def walk(
         self,
@@ -87,7 +98,7 @@ class Walker(Performer):
         size = leg_size(motion.positions)
         ahead = as_long(control, length, self.config.C)
         ahead[:, :2] /= size
-        start = Start.of(resized(motion.resampled(FPS), 1 / size), ahead[:, :3], T_h)
+        start = Start.of(resize_motion(motion.resampled(FPS), 1 / size), ahead[:, :3], T_h)
         own = np.concatenate([ahead[:1, 3:].repeat(T_h, axis=0), ahead[:, 3:]])
         past = torch.from_numpy(start.past).float().flatten(1)
         steer = torch.from_numpy(np.hstack([start.control, own])).float()
@@ -103,15 +114,25 @@ class Walker(Performer):
         )
         loop = bar("walking", len(ahead), progress)(loop)
         new = self.pose_scaler.inverse(torch.stack([frame.pose for frame in loop], dim=1))
-        both = [joined(start, one) for one in new.double().cpu().numpy().reshape(count, -1, J, 3)]
-        unlike, height = unlike_training(self.pose_scaler, past), motion.positions[-1, :, 1].min()
-        change = change_of(start.control[T_h - 2 :])
-        words = in_words(max(jump for _, jump in both), unlike, height, change, size)
-        if words:
+        both = [
+            finish_continuation(start, one)
+            for one in new.double().cpu().numpy().reshape(count, -1, J, 3)
+        ]
+        if words := self._doubts(start, max(jump for _, jump in both), size):
             warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
         path, name = start.path[T_h:], f"{motion.name}, continued"
-        made = [resized(Motion(world, FPS, root=path, source=name), size) for world, _ in both]
+        made = [
+            resize_motion(Motion(world, FPS, root=path, source=name), size) for world, _ in both
+        ]
         return made if samples > 1 else made[0]
+
+    def _doubts(self, start: Start, jump: float, size: float) -> str:
+        """What there is to say about a continuation of a figure of this size (`in_words`)."""
+        past = torch.from_numpy(start.past).float().flatten(1)
+        unlike = unlike_training(self.pose_scaler, past)
+        height = size * start.given[-1, :, 1].min()
+        change = change_of(start.control[len(past) - 2 :])
+        return in_words(jump, unlike, height, change, size)
 
     def _in_units(
         self, past: Float[Tensor, "T_h D"], control: Float[Tensor, "T C"], samples: int
@@ -127,7 +148,7 @@ class Walker(Performer):
 
         Past and control are encoded here, once; each call decodes.
         """
-        return self._denoiser(self.model.decode, self._encoded(self.model, past, control))
+        return self._denoiser(self.model.decode, self._encoded(self.model.encode, past, control))
 
     def window_sampler(self, steps: int | None = None) -> WindowSampler:
         """A function that draws a window of T_p poses: DDPM with all steps, or DDIM with `steps`.

@@ -46,24 +46,24 @@ class Windows:
         MotionError for a motion that has no clip (`Motion.to_clip`).
         Notebook: 07
         """
-        clips = [one.to_clip() if isinstance(one, Motion) else one for one in clips]
+        own = [one.to_clip() if isinstance(one, Motion) else one for one in clips]
         length = T_h + T_p
         starts = []
         first = 0
-        other = next((clip for clip in clips if clip.fps != FPS), None)
+        other = next((clip for clip in own if clip.fps != FPS), None)
         if other:
             raise ValueError(
                 f"clip {other.source!r} has {other.fps:g} frames/s; resample it to {FPS:g} first"
             )
-        for clip in clips:
+        for clip in own:
             starts.append(np.arange(first, first + len(clip) - length + 1))
             first += len(clip)
         starts = np.concatenate(starts) if starts else np.zeros(0, int)
         if not len(starts):
             raise ValueError(f"no clip has the {length} frames of a window; pass longer clips")
-        poses = torch.from_numpy(np.concatenate([clip.features() for clip in clips]))
+        poses = torch.from_numpy(np.concatenate([clip.features() for clip in own]))
         control = torch.from_numpy(
-            np.concatenate([clip.control for clip in clips]).astype(np.float32)
+            np.concatenate([clip.control for clip in own]).astype(np.float32)
         )
         pose_scaler, control_scaler = scalers or (Scaler.fit(poses), Scaler.fit(control))
         return cls(

@@ -11,17 +11,17 @@ from dataclasses import MISSING, asdict, dataclass
 from difflib import get_close_matches
 from functools import cache, partial
 from pathlib import Path
+from typing import Generic, TypeVar
 
 import torch
 from safetensors import safe_open
 from torch import Tensor, nn
 
 from ..baselines import (  # noqa: F401  they register their networks
-    hearing_transformer,
     text,
     transformer,
 )
-from ..conditions.clip import Clip, ClipError
+from ..conditions.clip import ClipError, ClipModel
 from ..conditions.clip import load as load_clip
 from ..ddpm import make_schedule
 from ..motion.scaler import Scaler
@@ -30,14 +30,15 @@ from ..performers.dancer import Dancer
 from ..performers.inbetweener import Inbetweener
 from ..performers.mover import Mover
 from ..performers.networks import kind_of, networks_of
+from ..performers.performer import Performer
 from ..performers.walker import Walker
 from .weights_file import (
     CheckpointError,
     check_sizes,
     config_of,
-    halved,
     pack,
     read_weights,
+    to_float16,
     unpack,
     write_weights,
 )
@@ -54,10 +55,12 @@ __all__ = [
 
 FOLDER = Path(__file__).parent
 AnyPerformer = Walker | Dancer | Mover | Inbetweener
+P = TypeVar("P", bound=Performer, covariant=True)
+Model = TypeVar("Model", bound=nn.Module)
 
 
 @dataclass(frozen=True)
-class Kind:
+class Kind(Generic[P]):
     """A performer in files.
 
     Its name, its format there, its class, its scalers with the width of each ("D" or "C" of the
@@ -66,7 +69,7 @@ class Kind:
 
     name: str
     format: str
-    performer: type
+    performer: type[P]
     scalers: dict[str, str]
     usual: str
 
@@ -77,8 +80,8 @@ MOVER = Kind("mover", "motiondiff_edu mover 1", Mover, {"motion": "D"}, "TextMoF
 INBETWEENER = Kind(
     "inbetweener", "motiondiff_edu inbetweener 1", Inbetweener, {"motion": "D"}, "KeyframeMoFusion"
 )
-KINDS = (WALKER, DANCER, MOVER, INBETWEENER)
-STORED = {8: pack, 16: halved, 32: dict}
+KINDS: tuple[Kind[AnyPerformer], ...] = (WALKER, DANCER, MOVER, INBETWEENER)
+STORED = {8: pack, 16: to_float16, 32: dict}
 
 
 def save(figure: AnyPerformer, path: str | Path, bits: int = 16) -> Path:
@@ -132,7 +135,7 @@ def bits_of(path: str | Path) -> int:
     return 8 if "I8" in kinds else 16 if "F16" in kinds else 32
 
 
-def load(name: str | Path, clip: Clip | str | Path | None = None) -> AnyPerformer:
+def load(name: str | Path, clip: ClipModel | str | Path | None = None) -> AnyPerformer:
     """A performer: shipped weights by name ("walker", "dancer", "mover" ...), or your own file.
 
     `clip`: for your own mover that reads by CLIP, that CLIP or its folder; without it the CLIP is
@@ -160,16 +163,16 @@ def load_dancer(path: str | Path) -> Dancer:
     return _read(path, DANCER)
 
 
-def _read(path: str | Path, *kinds: Kind, clip: Clip | str | Path | None = None) -> AnyPerformer:
+def _read(path: str | Path, *kinds: Kind[P], clip: ClipModel | str | Path | None = None) -> P:
     return read_weights(path, {kind.format: partial(_assembled, kind, clip=clip) for kind in kinds})
 
 
 def _assembled(
-    kind: Kind,
+    kind: Kind[P],
     tensors: dict[str, Tensor],
     metadata: dict[str, str],
-    clip: Clip | str | Path | None = None,
-) -> AnyPerformer:
+    clip: ClipModel | str | Path | None = None,
+) -> P:
     networks = networks_of(kind.name)
     config = config_of(metadata, {name: one.config for name, one in networks.items()}, kind.usual)
     sizes = {name: getattr(config, width) for name, width in kind.scalers.items()}
@@ -180,14 +183,15 @@ def _assembled(
     weights = weights_of(tensors)
     refuse_other_shapes(build, weights)
     schedule = make_schedule(tensors["schedule.beta"], metadata["schedule"])
+    perform: Callable[..., P] = kind.performer  # each takes its own scalers
     trained = (with_weights(build(), weights), schedule, *scalers, card_of(metadata))
     name = getattr(config, "clip", "")
     if not name and clip is None:
-        return kind.performer(*trained)
+        return perform(*trained)
     if not name:
         raise CheckpointError(f"{metadata['file']} does not read by CLIP: leave `clip` out")
     try:
-        return Mover(*trained, clip if isinstance(clip, Clip) else load_clip(clip or name))
+        return perform(*trained, clip if isinstance(clip, ClipModel) else load_clip(clip or name))
     except ClipError as error:
         raise CheckpointError(
             f"{metadata['file']} reads texts by {name}, or by its folder in `clip`: {error}"
@@ -212,7 +216,7 @@ def refuse_other_shapes(build: Callable[[], nn.Module], weights: dict[str, Tenso
             raise ValueError(f"{name} has the shape {given}; the network has {own}")
 
 
-def with_weights(model: nn.Module, weights: dict[str, Tensor]) -> nn.Module:
+def with_weights(model: Model, weights: dict[str, Tensor]) -> Model:
     """The network with these weights, in evaluation mode and without gradients."""
     model.load_state_dict(weights)
     return model.eval().requires_grad_(False)

@@ -15,7 +15,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from ..conditions.text import read
+from ..conditions.text import read_words
 from ..conditions.word_encoder import FIRST, ids_of
 from ..metrics.distributions import Space
 from ..motion.moving_frame import D, to_features
@@ -46,7 +46,7 @@ class Judge:
     @torch.inference_mode()
     def of_texts(self, texts: Sequence[str]) -> Float[np.ndarray, "N E"]:
         """The points of captions.  Raises TextError for a text that cannot be read."""
-        ids = ids_of([read(text, self.words).words for text in texts], self.words)
+        ids = ids_of([read_words(text, self.words).words for text in texts], self.words)
         return self.space.text_points(ids).double().numpy()
 
     @torch.inference_mode()

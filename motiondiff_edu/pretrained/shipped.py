@@ -20,10 +20,12 @@ from ..motion.known import checked_known
 from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HIPS, TOES
-from ..performers.inbetweener import STEPS
-from ..performers.mover import LONGEST, SHORTEST
+from ..performers.inbetweener import STEPS, Inbetweener
+from ..performers.mover import LONGEST, SHORTEST, Mover
 from ..performers.performer import bar, generators
+from ..performers.walker import Walker
 from . import checkpoints
+from .checkpoints import P
 
 
 def inbetween(
@@ -49,7 +51,7 @@ def inbetween(
     """
     known, count = _fitting(motion, known), checked_samples(samples)
     checked_seed(seed)
-    inbetweener = checkpoints.pretrained("inbetweener")
+    inbetweener = _shipped(Inbetweener)
     steps = min(checked_count(steps, "steps"), inbetweener.schedule.S)
     if known.all():
         raise MotionError(f"{motion.name}: every joint is known, so there is nothing to generate")
@@ -95,7 +97,7 @@ def reconstruct(
     """
     known, count = _fitting(motion, known), checked_samples(samples)
     checked_seed(seed)
-    walker, draws = checkpoints.pretrained("walker"), generators(seed, count)
+    walker, draws = _shipped(Walker), generators(seed, count)
     watch = bar("reconstructing", reconstruction.ROUNDS, progress)
     made = [
         reconstruction.reconstruct(walker, motion.positions, known, generator=draw, watch=watch)
@@ -148,7 +150,7 @@ def edit(
     count = checked_samples(samples)
     checked_seed(seed)
     checked_strength(strength)
-    mover = checkpoints.pretrained("mover")
+    mover = _shipped(Mover)
     for note in mover.reader.read(text).notes:
         warnings.warn(note, MotionWarning, stacklevel=2)
     made = by_words.edit_by_words(
@@ -159,19 +161,32 @@ def edit(
     kept = nothing if mask is None else mask
     body, floor = Body.of(motion.positions), floor_under(motion.positions)
     made = [clean_up(one, FPS, kept, body=body, floor=floor) for one in made]
+    _warn_of_glides(motion, made)
+    made = [_made(motion, nothing, positions, f"edited: {text.strip():.40}") for positions in made]
+    return made if samples > 1 else made[0]
+
+
+def _warn_of_glides(motion: Motion, made: list[Float[np.ndarray, "T 21 3"]]) -> None:
+    """A MotionWarning where the feet of an edited motion slide, and did not before."""
+    nothing = np.zeros((len(motion), len(motion.skeleton)), bool)
     glides = [glide for one in made if any(glide := longest_glide(one, nothing))]
     if glides and not any(longest_glide(motion.positions, nothing)):
-        which = f" ({len(glides)} of {count} samples)" if count > 1 else ""
+        which = f" ({len(glides)} of {len(made)} samples)" if len(made) > 1 else ""
         first, last = glides[0]
         warnings.warn(
             f"{motion.name}{which}: both feet slide between frames {first} and {last}. The "
             "sentence must say what the legs do as well, such as 'walks forward while waving', and "
             "match the joints that are kept",
             MotionWarning,
-            stacklevel=2,
+            stacklevel=3,
         )
-    made = [_made(motion, nothing, positions, f"edited: {text.strip():.40}") for positions in made]
-    return made if samples > 1 else made[0]
+
+
+def _shipped(kind: type[P]) -> P:
+    """The shipped performer of the usual name."""
+    made = checkpoints.pretrained(kind.__name__.lower())
+    assert isinstance(made, kind)
+    return made
 
 
 def _fitting(motion: Motion, known) -> Bool[np.ndarray, "T J"]:

@@ -17,7 +17,7 @@ import os
 from collections.abc import Callable, Mapping
 from dataclasses import fields
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import torch
 from safetensors import SafetensorError, safe_open
@@ -25,11 +25,12 @@ from safetensors.torch import save_file
 from torch import Tensor
 
 from .._files import digest_of_tensors, digest_of_texts, replacing
+from ..performers.networks import Config
 
 # ---- files ---------------------------------------------------------------------------------------
-Config = TypeVar("Config")
+Read = TypeVar("Read")  # the object that a file describes
 # (tensors, metadata) -> the object that they describe
-Assemble = Callable[[dict[str, Tensor], dict[str, str]], object]
+Assemble = Callable[[dict[str, Tensor], dict[str, str]], Read]
 # settings of earlier versions; with this value they had no effect and are ignored
 RETIRED = {"reach": 0.0}
 LARGEST = 10_000  # of a whole number among the settings: widths, steps, frames
@@ -58,7 +59,7 @@ def write_weights(
     return path
 
 
-def read_weights(path: str | Path, kinds: Mapping[str, Assemble]) -> object:
+def read_weights(path: str | Path, kinds: Mapping[str, Assemble[Read]]) -> Read:
     """Read and check a file, and return kinds[format](tensors, metadata).
 
     `kinds` has a function for each format that is accepted.
@@ -94,7 +95,7 @@ def read_weights(path: str | Path, kinds: Mapping[str, Assemble]) -> object:
         ) from error
 
 
-def config_of(metadata: dict[str, str], kinds: Mapping[str, type[Config]], default: str) -> Config:
+def config_of(metadata: dict[str, str], kinds: Mapping[str, type], default: str) -> Config:
     """The configuration; every setting must be known and have the type of its default.
 
     Whole numbers are at most LARGEST, so that a false one does not fill the memory.
@@ -115,7 +116,7 @@ def config_of(metadata: dict[str, str], kinds: Mapping[str, type[Config]], defau
             "first (performers.networks.register)"
         )
     values = {k: v for k, v in values.items() if k not in RETIRED or v != RETIRED[k]}
-    defaults = {field.name: field.default for field in fields(kind)}
+    defaults: dict[str, Any] = {field.name: field.default for field in fields(kind)}
     unknown = set(values) - set(defaults)
     if unknown:
         raise CheckpointError(
@@ -183,7 +184,7 @@ def _looks_like(metadata: dict[str, str], tensors: dict) -> str:
 SCALE = ".scale"
 
 
-def halved(weights: dict[str, Tensor]) -> dict[str, Tensor]:
+def to_float16(weights: dict[str, Tensor]) -> dict[str, Tensor]:
     """Weights as float16; whole numbers stay as they are.
 
     Raises ValueError for weights beyond float16, of which the largest is 65,504.
@@ -198,12 +199,12 @@ def halved(weights: dict[str, Tensor]) -> dict[str, Tensor]:
 def pack(tensors: dict[str, Tensor]) -> dict[str, Tensor]:
     """Each matrix as int8 with one scale per row (`name.scale`), each vector in float16.
 
-    Raises ValueError as `halved` does.
+    Raises ValueError as `to_float16` does.
     """
     packed = {}
     for name, weight in tensors.items():
         if weight.dim() < 2 or not weight.is_floating_point():
-            packed |= halved({name: weight})
+            packed |= to_float16({name: weight})
             continue
         scale = weight.float().flatten(1).abs().amax(1).clamp(min=1e-12) / 127
         rows = scale.view(-1, *[1] * (weight.dim() - 1))

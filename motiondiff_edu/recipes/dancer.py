@@ -14,8 +14,7 @@ import torch
 from torch import Tensor, nn
 
 from .._files import digest_of_tensors
-from ..baselines.hearing_transformer import HearingTransformerConfig
-from ..baselines.regression import regression_loss
+from ..baselines.transformer import HearingTransformerConfig, regression_loss
 from ..beyond.classifier_free import without
 from ..beyond.gain_noise import gain_noise
 from ..beyond.schedules import shifted

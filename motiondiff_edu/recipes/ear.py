@@ -23,7 +23,7 @@ from ..beyond.hearing import (
 from ..conditions.music import frame_times
 from ..motion.scaler import Scaler
 from ..performers.dancer import Dancer
-from ..performers.ear import Ear, EarConfig, EarOutput, rescaled
+from ..performers.ear import Ear, EarConfig, EarOutput, rescale_ear
 from ..performers.hearing_mofusion import WithEar
 from ..training import LossFn
 from .songs import HeardSongs, songs_as_mel
@@ -123,7 +123,7 @@ class TrainedEar:
 
     def hearing(self, scaler: Scaler) -> Ear:
         """The ear for Mel frames that are standardised by another scaler."""
-        return rescaled(self.ear, self.scaler, scaler)
+        return rescale_ear(self.ear, self.scaler, scaler)
 
 
 def ear_within(dancer: Dancer) -> TrainedEar:

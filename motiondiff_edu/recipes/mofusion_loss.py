@@ -9,7 +9,7 @@ from torch import Tensor, nn
 
 from ..beyond import loss_terms
 from ..ddpm import Schedule, squared_error
-from ..kinematic_loss import Body, KinematicWeights, kinematic_parts, over_time, training_loss
+from ..kinematic_loss import Body, KinematicWeights, kinematic_parts, training_loss, weight_by_step
 from ..motion.scaler import Scaler
 
 BatchLoss = Callable[[nn.Module, Tensor, object, Tensor, torch.Generator], Tensor]
@@ -48,7 +48,7 @@ def batch_loss(
     `weights` None leaves the kinematic losses out. The parts of the batch are on one device.
     `body_of` is that of the features' frame, `dance_frame.body_of` for instance.
     """
-    lambda_k = over_time(schedule, weights.over_time) if weights else None
+    lambda_k = weight_by_step(schedule, weights.over_time) if weights else None
 
     def of_batch(
         model: nn.Module,

@@ -20,9 +20,9 @@ from ..beyond import loss_terms
 from ..beyond.schedules import shifted
 from ..beyond.timeline import Timed, timeline
 from ..conditions import clip
-from ..conditions.clip import Clip, check
+from ..conditions.clip import ClipModel, check
 from ..conditions.clip import load as load_clip
-from ..conditions.text import base_vocabulary, read
+from ..conditions.text import base_vocabulary, read_words
 from ..conditions.word_encoder import NOTHING, PADDING, ids_of
 from ..ddpm import Schedule, cosine_schedule
 from ..kinematic_loss import KinematicWeights, training_loss
@@ -131,7 +131,7 @@ def described(clips: int, seed: int) -> DescribedData:
         timelines.append(timeline_of(acted.spans, len(acted)))
         n, other = len(acted) // GRID * GRID, neighbour(acted.sentence, rng)
         truths.setdefault(n, []).append((acted.sentence, mirrored_sentence(acted.sentence)))
-        wrong = read(caption(other, rng), words, {}).words if other else ()
+        wrong = read_words(caption(other, rng), words, {}).words if other else ()
         others.setdefault(n, []).append(wrong)
     windows = DescribedWindows.of(positions, contacts, texts, words, timelines)
     return DescribedData(windows, truths, {n: ids_of(x, words) for n, x in others.items()})
@@ -162,7 +162,7 @@ def train_mover(
     run_file: Path,
     windows: DescribedWindows | None = None,
     log=print,
-    clip: Clip | None = None,
+    clip: ClipModel | None = None,
     device: str | None = None,
 ) -> Mover:
     """Train by a recipe, or continue the run in `run_file`; return a mover with averaged weights.
@@ -255,7 +255,7 @@ def texts_as_ids(ids: Int[Tensor, "B M"]) -> Texts:
     return ids
 
 
-def texts_by(clip: Clip, windows: DescribedWindows) -> Callable[[Tensor], Texts]:
+def texts_by(clip: ClipModel, windows: DescribedWindows) -> Callable[[Tensor], Texts]:
     """What a network that reads by CLIP takes: the tokens of all captions, which are encoded now.
 
     Raises ValueError for windows that hold words instead of whole texts.

@@ -28,7 +28,7 @@ def lows_and_highs(
     return starts.astype(np.float64), low, high
 
 
-def waves(
+def draw_waveform(
     axis: Axes, audio: Float[np.ndarray, "N"], sample_rate: float | int, bins: int = 1200
 ) -> None:
     """A waveform over seconds: the range of samples in each of `bins` pieces."""

@@ -329,7 +329,7 @@ def masks(
     return fig
 
 
-def over_time(
+def value_over_time(
     samples: Float[np.ndarray, "N T"],
     lines: Mapping[str, Float[np.ndarray, "T"]],
     given: Bool[np.ndarray, "T"],

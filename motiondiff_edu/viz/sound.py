@@ -13,7 +13,7 @@ from matplotlib.ticker import FuncFormatter
 from numpy.typing import ArrayLike
 
 from .body import GREY
-from .over_time import time_map, waves
+from .over_time import draw_waveform, time_map
 from .style import DASHES, OKABE_ITO, SMALL, figure, legend
 
 # ---- sound ---------------------------------------------------------------------------------------
@@ -250,7 +250,7 @@ def levels_over_sound(
     """
     fig, axes = figure(10, 1.6 + 2.3 * len(maps), words, 1 + len(maps), 1, share="x",
                        heights=[1.1, *[2] * len(maps)])  # fmt: skip
-    waves(axes[0], audio, sample_rate)
+    draw_waveform(axes[0], audio, sample_rate)
     axes[0].set(title="the song; dotted lines are beats", xlim=(0, seconds))
     for axis, (name, weights) in zip(axes[1:], maps.items(), strict=True):
         time_map(axis, weights, token_times, seconds)

@@ -10,6 +10,7 @@ import os
 from collections.abc import Sequence
 
 import matplotlib
+from matplotlib import cycler  # type: ignore[attr-defined]  # not in the stubs
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.text import Text
@@ -33,7 +34,7 @@ _RC = {
     "legend.fontsize": SMALL,
     "axes.spines.top": False,
     "axes.spines.right": False,
-    "axes.prop_cycle": matplotlib.cycler(color=OKABE_ITO[:7]),  # type: ignore[attr-defined]  # not in the stubs
+    "axes.prop_cycle": cycler(color=OKABE_ITO[:7]),
     "lines.linewidth": 2.2,
     "axes.grid": True,
     "grid.alpha": 0.25,

@@ -129,7 +129,7 @@ ROUNDING = 1e-10  # smaller values are rounding of float32 and not drawn
 REACH = 1.15  # smallest distance from the hips to the edge of a picture, metres
 
 
-def stretched(
+def pose_rows(
     rows: Mapping[str, Float[np.ndarray, "_ 21 3"]],
     words: str,
     n: int = 6,

@@ -43,7 +43,7 @@ def footstep_curves(
     return fig
 
 
-def over_time(
+def measures_over_time(
     panels: Mapping[str, Mapping[str, Float[np.ndarray, "_"]]],
     words: str,
     shade_to: float | int = 0,

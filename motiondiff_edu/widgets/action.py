@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import ipywidgets
 
-from .turn import TURN
+from .live import TURN
 
 # seconds: who presses again sooner cannot have seen the answer, for it takes the eye and the hand
 # longer (simple reaction times are about 0.25 s)

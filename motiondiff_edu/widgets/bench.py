@@ -23,12 +23,11 @@ from ..motion.skeleton import JOINTS, PARENTS, J
 from ..rollout import AnyWalker
 from ..viz import body
 from . import module, packing, poster
+from .live import TURN, Starting
 from .player import PAGE
-from .start import Starting
 from .still import page_on_picture, with_still
-from .turn import TURN
 
-MODULE = module.joined(module.BENCH)
+MODULE = module.es_module(module.BENCH)
 _BYTES = ("joints", "roots", "mended_joints", "mended_roots")
 HEIGHT = 320  # pixels
 GHOST = "#009E73"  # as in js/bench_paint.js

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import ipywidgets
 
-from .turn import TURN
+from .live import TURN
 
 WIDTH = "290px"  # of a slider; with less, its track is too short to be set
 

@@ -19,15 +19,14 @@ from jaxtyping import Bool, Float
 from numpy.typing import ArrayLike
 
 from ..editing.edit import Edit, Made, Make, drag_in_words, make_between
-from ..motion import recordings
 from ..motion.formats.bvh.fit import FitReport
 from ..motion.formats.bvh.write import write_bvh
-from ..motion.motion import check_no_recording
+from ..motion.recordings import recordings
 from ..motion.skeleton import JOINTS, J, joint_index
 from . import editor_page, packing
-from .editor_page import MODULE, MOST, complaint, listed
+from .editor_page import MODULE, MOST, complaint, frames_in_words
+from .live import TURN
 from .still import page_on_picture, with_still
-from .turn import TURN
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,14 +146,14 @@ class Editor(anywidget.AnyWidget):
                 edit = edit.pin(
                     frame, None if self.samples is None else self.samples[self.chosen, frame]
                 )
-        return self._do(edit, f"Pinned {listed(frames)}.")
+        return self._do(edit, f"Pinned {frames_in_words(frames)}.")
 
     def unpin(self, *frames: int) -> str:
         """Release frames."""
         edit, frames = self.edit, [self.edit.index(frame) for frame in frames]
         for frame in frames:
             edit = edit.unpin(frame)
-        return self._do(edit, f"Released {listed(frames)}.")
+        return self._do(edit, f"Released {frames_in_words(frames)}.")
 
     def drag(self, frame: int, joint: str, target) -> str:
         """Move a joint of a pinned frame to `target` (metres, world); bones keep their lengths."""
@@ -203,11 +202,8 @@ class Editor(anywidget.AnyWidget):
         `read_motion` has read, unless `overwrite`.
         """
         path = Path(path).expanduser()
-        if not overwrite:
-            check_no_recording(path)
-        report = write_bvh(path, self._shown(), self._fps)
-        recordings.note_written(path)
-        return report
+        with recordings.writing(path, overwrite):
+            return write_bvh(path, self._shown(), self._fps)
 
     def _receive(self, _, content: dict, buffers) -> None:
         if content["do"] == "ping":  # the page only tests whether the kernel answers
@@ -319,7 +315,7 @@ class Editor(anywidget.AnyWidget):
                 "message": words, "undo": len(self._past),
                 "received": max(last.get("received", 0), number or 0),
                 "edition": last.get("edition", 0) + 1,
-                "description": editor_page.described(edit, made, self._fps),
+                "description": editor_page.alt_text(edit, made, self._fps),
             }  # fmt: skip
         return words
 

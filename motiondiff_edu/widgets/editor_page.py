@@ -16,13 +16,13 @@ import numpy as np
 
 from ..editing.edit import KEPT, Edit, Made
 from ..editing.masks import body_part
-from ..motion import recordings
+from ..motion.recordings import recordings
 from ..motion.skeleton import J, joint_index
 from ..viz import body
 from . import module, poster
 from .player import PAGE
 
-MODULE = module.joined(module.EDITOR)
+MODULE = module.es_module(module.EDITOR)
 MOST = 6  # in-betweens at once: more ghosts are hard to distinguish
 BINARY = ("joints", "roots", "poses", "made_joints", "made_roots")
 PLAIN = ("scene", "state", "frame", "chosen", "count", "resample", "busy", "file")
@@ -45,20 +45,20 @@ def state_of(edit: Edit, made: Made | None) -> dict:
     return {
         "pins": pins,
         "moved": [[joint_index(name) for name in edit.moved.get(f, ())] for f in pins],
-        "part": edit.part or "", "kept": kept, "held": held(edit),
+        "part": edit.part or "", "kept": kept, "held": given_in_words(edit),
         "made": 0 if made is None else len(made.samples),
         "old": made is not None and made.edit is not edit,
         "measured": [] if made is None else [made.measured(k) for k in range(len(made.samples))],
     }  # fmt: skip
 
 
-def held(edit: Edit) -> str:
+def given_in_words(edit: Edit) -> str:
     """A text: what is given now, and the frames where it contradicts itself."""
     words = f"{edit}."
     if edit.torn:
         words += (
-            f" In {listed(edit.torn)} the pinned pose moves the part that is kept throughout: "
-            "expect a jump."
+            f" In {frames_in_words(edit.torn)} the pinned pose moves the part that is kept "
+            "throughout: expect a jump."
         )
     return words
 
@@ -68,7 +68,7 @@ def poses_of(edit: Edit) -> bytes:
     return np.array([edit.pins[frame] for frame in sorted(edit.pins)], "<f4").tobytes()
 
 
-def described(edit: Edit, made: Made | None, fps: float) -> str:
+def alt_text(edit: Edit, made: Made | None, fps: float) -> str:
     """The alternative text."""
     some = "" if made is None else f" {len(made.samples)} in-betweens generated."
     return (
@@ -77,7 +77,7 @@ def described(edit: Edit, made: Made | None, fps: float) -> str:
     )
 
 
-def listed(frames) -> str:
+def frames_in_words(frames) -> str:
     """The first six frames as a text."""
     frames = sorted(frames)
     some = ", ".join(map(str, frames[:6])) + (" ..." if len(frames) > 6 else "")
@@ -132,7 +132,7 @@ def save_as(editor, name: str) -> str:
     path = Path(file_of(name))
     ours = recordings.is_ours(path)
     if path.exists() and not ours:
-        why = "was read" if recordings.is_recording(path) else "is from before this kernel"
+        why = "was read" if path in recordings else "is from before this kernel"
         raise ValueError(
             f"not saved: {path} {why}, and it would be lost. Type another name, for instance "
             f"{free_name(path)}"

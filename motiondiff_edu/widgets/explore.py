@@ -5,8 +5,8 @@ import ipywidgets
 from ..viz.style import as_html
 from . import states
 from .controls import steering
+from .live import TURN
 from .still import with_still
-from .turn import TURN
 
 
 class Explored(ipywidgets.VBox):

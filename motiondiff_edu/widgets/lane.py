@@ -7,9 +7,8 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from ..viz import body
-from .listening import Listening
-from .sound import Sound, as_sound, as_times, peaks
-from .strips import Strips
+from .listening import Listening, Strips
+from .sound import Sound, as_sound, as_times, waveform
 
 PURPLE, GREEN = "#CC79A7", "#009E73"
 # pixels
@@ -49,7 +48,7 @@ class Lane:
 
     def traits(self) -> tuple[bytes, bytes, dict]:
         """The page's data: the sound file, bytes of waveform and attention, and their record."""
-        wave = peaks(self.sound.samples)
+        wave = waveform(self.sound.samples)
         record = {
             "mime": self.sound.mime,
             "seconds": self.frames / self.fps,
@@ -80,7 +79,7 @@ class Lane:
             for k, share in enumerate(mean / mean.max()):
                 box = [ends[k], top, max(ends[k], ends[k + 1] - 1), top + WAVE]
                 pen.rectangle(box, fill=body.mix(PURPLE, body.PAPER, 1 - float(share)))
-        for x, low_high in enumerate(peaks(self.sound.samples, width)):
+        for x, low_high in enumerate(waveform(self.sound.samples, width)):
             low, high = (WAVE / 2 * (1 - v / 127) for v in low_high[::-1].astype(float))
             pen.line([x, top + low, x, top + high], fill=body.INK)
         for times, tall, wide in ((self.beats, 5, 1), (self.downbeats, 12, 2)):

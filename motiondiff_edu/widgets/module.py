@@ -18,7 +18,7 @@ _IMPORT = re.compile(r'^import \{[^}]*\} from "\./\w+\.js";\n', re.MULTILINE)
 _EXPORT = re.compile(r"^export (?=function|const)", re.MULTILINE)
 
 
-def joined(parts: tuple[str, ...] = PARTS) -> str:
+def es_module(parts: tuple[str, ...] = PARTS) -> str:
     """One ES module: the text of the parts without their imports.
 
     Only the exports of the last part remain.

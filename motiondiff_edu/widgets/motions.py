@@ -140,6 +140,6 @@ def write_gif(motion: Motion, path: Path) -> None:
 
 
 @registry.writers.register(".mp4")
-def write_mp4(motion: Motion, path: Path) -> None:
+def write_film(motion: Motion, path: Path) -> None:
     """Write a film with its sound.  Raises ImportError without imageio-ffmpeg."""
     player_of([motion]).save_mp4(path)

@@ -16,10 +16,10 @@ from numpy.typing import ArrayLike
 from ..conditions import drawn_path
 from ..viz.skeleton import top_view
 from . import module
-from .start import Starting
+from .live import Starting
 from .still import with_still
 
-MODULE = module.joined(module.PATH)
+MODULE = module.es_module(module.PATH)
 
 
 class PathPad(Starting):

@@ -34,7 +34,7 @@ from .still import page_on_picture, with_still
 
 __all__ = ["Look", "Player", "Soundtrack", "describe"]
 
-MODULE = module.joined()
+MODULE = module.es_module()
 LOWEST, HIGHEST = 60, 4000  # pixels
 HIGHEST_IN_DEMOS = 340  # pixels: so the buttons below are seen as well at 1280 x 720
 GIF_FPS = 50  # browsers slow a GIF down whose pictures stay for less than 20 ms

@@ -11,8 +11,8 @@ import ipywidgets
 
 from ..conditions.text import TextError
 from ..performers.mover import LONGEST, SECONDS, SHORTEST, Mover
+from .live import TURN
 from .player import Player
-from .turn import TURN
 
 ANSWERS = 4
 SENTENCE = "walks forward, then waves with the left hand"

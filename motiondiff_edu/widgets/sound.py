@@ -98,7 +98,7 @@ def encode(
         return _wav(samples, sample_rate), "audio/wav"
 
 
-def peaks(samples: Float[np.ndarray, "N"], bins: int = 1000) -> Int8[np.ndarray, "_ 2"]:
+def waveform(samples: Float[np.ndarray, "N"], bins: int = 1000) -> Int8[np.ndarray, "_ 2"]:
     """The waveform: lowest and highest sample of each of (at most) `bins` equal pieces.
 
     The largest absolute sample becomes 127.

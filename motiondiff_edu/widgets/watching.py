@@ -20,7 +20,7 @@ SMOOTH = 30  # steps of the running mean
 SHARE = 3  # a picture is waited for three times as long as it took: at most a quarter of the time
 
 
-def watched(
+def watch_training(
     reports: Iterable[TrainStep],
     steps: int,
     moving: Callable[[], Figures],

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import pytest
 import torch
+from seeds import seeded
 
 from data_synth.mixtures import crossed_bars, ring
 from motiondiff_edu.baselines.known_answer import (
@@ -25,10 +26,6 @@ from motiondiff_edu.exact import conditional, exact_denoiser, mixture, sample_mi
 
 SCHEDULE = cosine_schedule(40)
 RHO = 0.8
-
-
-def seeded(seed: int = 0) -> torch.Generator:
-    return torch.Generator().manual_seed(seed)
 
 
 def problem_of(truth, values, known, past=None):

@@ -10,7 +10,7 @@ import torch
 from motiondiff_edu.baselines import linear_dropout as ld
 from motiondiff_edu.baselines import linear_gaussian
 from motiondiff_edu.ddpm import linear_schedule
-from motiondiff_edu.diffusion_dropout import diffusion_dropout, frame_dropout, zeroing
+from motiondiff_edu.diffusion_dropout import diffusion_dropout, frame_dropout, zero_past
 from motiondiff_edu.motion.clip import Clip
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.windows import Windows
@@ -50,9 +50,9 @@ def one_step(past, generator):
 
 
 KINDS = {
-    "diffusion": (by_steps, ld.noised(0.4, SCHEDULE.alpha_bar[1:])),
-    "one step": (one_step, ld.noised(1.0, SCHEDULE.alpha_bar[30:31])),
-    "zeroing": (lambda past, g: zeroing(past, 0.3, g), ld.zeroed(0.3)),
+    "diffusion": (by_steps, ld.noise_moments(0.4, SCHEDULE.alpha_bar[1:])),
+    "one step": (one_step, ld.noise_moments(1.0, SCHEDULE.alpha_bar[30:31])),
+    "zeroing": (lambda past, g: zero_past(past, 0.3, g), ld.zero_moments(0.3)),
     "frames": (lambda past, g: frame_dropout(past, 0.3, g), ld.frames_zeroed(0.3, T_H, D)),
     "entries": (
         lambda past, g: past * (torch.rand(past.shape, generator=g) >= 0.3) / 0.7,
@@ -65,7 +65,7 @@ KINDS = {
 def test_the_closed_form_is_what_drawn_pasts_tend_to(windows, clean, kind):
     drop, moments = KINDS[kind]
     drawn = ld.products(windows, drop, 60, torch.Generator().manual_seed(1))
-    wanted = ld.expected(clean, moments)
+    wanted = ld.expected_products(clean, moments)
     assert (wanted.xx - drawn.xx).abs().max() < 0.06 < 0.15 < (clean.xx - drawn.xx).abs().max()
     assert (wanted.xy - drawn.xy).abs().max() < 0.04
     control = slice(T_H * D, None)  # and the constant: as they were
@@ -75,7 +75,9 @@ def test_the_closed_form_is_what_drawn_pasts_tend_to(windows, clean, kind):
 def test_one_step_of_noise_is_plain_ridge_by_noise_over_signal(clean):
     alpha_bar, P = 0.36, T_H * D
     found = ld.fit(
-        ld.expected(clean, ld.noised(1.0, torch.tensor([alpha_bar]))), clean, ridge=0.0
+        ld.expected_products(clean, ld.noise_moments(1.0, torch.tensor([alpha_bar]))),
+        clean,
+        ridge=0.0,
     ).weight.double()
     penalty = torch.zeros(len(clean.xx), dtype=torch.float64)
     penalty[:P] = 0.64 / 0.36
@@ -90,7 +92,8 @@ def test_zeroing_shrinks_a_past_without_control_evenly(windows, clean):
         clean.xx[:P, :P], clean.xy[:P], clean.yy, windows
     )  # no control, no constant
     least, dropped = (
-        torch.linalg.solve(p.xx, p.xy) for p in (alone, ld.expected(alone, ld.zeroed(0.3)))
+        torch.linalg.solve(p.xx, p.xy)
+        for p in (alone, ld.expected_products(alone, ld.zero_moments(0.3)))
     )
     torch.testing.assert_close(
         least, dropped
@@ -107,7 +110,8 @@ def test_without_dropout_it_is_ordinary_least_squares(windows, clean):
 def test_weight_moves_from_the_past_to_the_control(clean):
     rates = (0.0, 0.2, 1.0)
     walkers = [
-        ld.fit(ld.expected(clean, ld.noised(rate, SCHEDULE.alpha_bar[1:])), clean) for rate in rates
+        ld.fit(ld.expected_products(clean, ld.noise_moments(rate, SCHEDULE.alpha_bar[1:])), clean)
+        for rate in rates
     ]
     past, control = zip(*(ld.contributions(walker, clean) for walker in walkers), strict=True)
     assert control[0] < control[1] < control[2] and past[2] < past[0]
@@ -141,8 +145,8 @@ def test_windows_of_several_futures_are_refused(windows):
 @pytest.mark.parametrize(
     "moments",
     [
-        lambda rate: ld.noised(rate, SCHEDULE.alpha_bar[1:]),
-        ld.zeroed,
+        lambda rate: ld.noise_moments(rate, SCHEDULE.alpha_bar[1:]),
+        ld.zero_moments,
         lambda rate: ld.frames_zeroed(rate, T_H, D),
         lambda rate: ld.entries_rescaled(rate, T_H * D),
     ],

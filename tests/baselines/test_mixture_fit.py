@@ -6,6 +6,7 @@ The fast denoiser is the exact one.
 import numpy as np
 import pytest
 import torch
+from seeds import seeded
 
 from data_synth.mixtures import crossed_bars
 from data_synth.walking import random_control, walk
@@ -21,10 +22,6 @@ from motiondiff_edu.exact import exact_denoiser, log_density, sample_mixture
 from motiondiff_edu.motion.skeleton import JOINTS
 
 SCHEDULE = cosine_schedule(50)
-
-
-def seeded(seed: int = 0) -> torch.Generator:
-    return torch.Generator().manual_seed(seed)
 
 
 def test_em_finds_the_mixture_that_made_the_points():

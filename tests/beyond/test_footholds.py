@@ -131,14 +131,14 @@ def test_another_pose_may_stand():
     with torch.no_grad():
         by_default = model.encode(past, control)
         standing = model.encode(past, control, other)
-    for one, other_one in zip(by_default.memory.layers, standing.memory.layers, strict=True):
+    for one, other_one in zip(by_default.layers, standing.layers, strict=True):
         assert torch.equal(one.keys, other_one.keys)
     assert torch.equal(standing.held, model.held(other, control)) and not torch.equal(
         standing.held, by_default.held
     )
     chosen = standing.rows(torch.tensor([1, 0, 1]))
     assert torch.equal(chosen.held, standing.held[[1, 0, 1]])
-    keys, wanted = (one.memory.layers[0].keys for one in (chosen, standing))
+    keys, wanted = (one.layers[0].keys for one in (chosen, standing))
     assert torch.equal(keys, wanted[[1, 0, 1]])
 
 
@@ -269,7 +269,7 @@ def test_training_sees_the_plain_gate_and_use_the_leaning_one():
         part = model.train(training)
         with torch.no_grad():
             context = part.encode(past, control)
-            x = part.attend(part.embed(x_s, s, context.memory), context.memory)
+            x = part.attend(part.embed(x_s, s, context), context)
             gate = part.gate(x)
             free = part.head(x)
             out = part(x_s, s, past, control)
@@ -287,7 +287,7 @@ def test_gates_are_those_the_answer_was_made_with():
     model = tiny()
     with torch.no_grad():
         context = model.encode(past, control)
-        x = model.attend(model.embed(x_s, s, context.memory), context.memory)
+        x = model.attend(model.embed(x_s, s, context), context)
         free, held = model.head(x), context.held
         apart = ((held - free[..., COLUMNS]) * model.pose_std).unflatten(-1, (4, 3)).norm(dim=-1)
         gates = openness(model.gate(x), apart)

@@ -24,7 +24,7 @@ def folder(tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def tiny(folder) -> clip.Clip:
+def tiny(folder) -> clip.ClipModel:
     return clip.load(folder)
 
 

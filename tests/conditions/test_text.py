@@ -10,7 +10,7 @@ from motiondiff_edu.conditions.text import (
     TextError,
     base_vocabulary,
     lemma,
-    read,
+    read_words,
     synonyms,
     words_of,
 )
@@ -49,11 +49,11 @@ def test_a_word_that_only_looks_like_a_form_is_not_read_as_one(word):
     known = ("arm", "left", "man", "out", "over", "right", "to", "walk")
     assert lemma(word, frozenset(known)) == word
     with pytest.raises(TextError, match=word):
-        read(f"walks {word}", known)
+        read_words(f"walks {word}", known)
 
 
 def test_known_words_are_read_and_others_passed_over_or_replaced_in_the_open():
-    found = read("She strolls, then kicks with... the left feet", [*WORDS, "then", "with"],
+    found = read_words("She strolls, then kicks with... the left feet", [*WORDS, "then", "with"],
                  {"stroll": "walk"})  # fmt: skip
     assert found.words == ("walk", "then", "kick", "with", "left", "foot")
     assert found.notes == ("'strolls' is read as 'walk'",)
@@ -78,7 +78,7 @@ def test_known_words_are_read_and_others_passed_over_or_replaced_in_the_open():
 )
 def test_what_cannot_be_read_is_said(text, said):
     with pytest.raises(TextError, match=said):
-        read(text, WORDS)
+        read_words(text, WORDS)
 
 
 def test_every_caption_is_read_whole_and_held_out_verbs_are_unknown():
@@ -88,10 +88,10 @@ def test_every_caption_is_read_whole_and_held_out_verbs_are_unknown():
     refused = 0
     for clip in clips(30, 5):
         for text in clip.captions:
-            assert read(text, words, {}).notes == ()
+            assert read_words(text, words, {}).notes == ()
         for text in worded(clip.acted.sentence, rng, new_verbs=True):
             try:
-                read(text, words, {})
+                read_words(text, words, {})
             except TextError:
                 refused += 1
     assert refused > 100 and len(words) < 140
@@ -99,22 +99,22 @@ def test_every_caption_is_read_whole_and_held_out_verbs_are_unknown():
 
 def test_counts_are_read_from_digits_and_other_counts_are_refused_with_those_there_are():
     known = base_vocabulary(captions.vocabulary())
-    assert read("jumps 1 time", known).words == ("jump", "one", "time")
-    assert read("jumps 2 times", known).words[1] == "2"
+    assert read_words("jumps 1 time", known).words == ("jump", "one", "time")
+    assert read_words("jumps 2 times", known).words[1] == "2"
     for text in ("jumps five times", "jumps 7 times"):
         with pytest.raises(TextError, match="did you mean once or twice or three or four"):
-            read(text, known)
+            read_words(text, known)
     with pytest.raises(TextError, match="'läuft', 'vorwärts'"):
-        read("läuft vorwärts", known)
+        read_words("läuft vorwärts", known)
     with pytest.raises(TextError, match="'without'"):
-        read("walks without waving", known)
+        read_words("walks without waving", known)
 
 
 def test_a_text_that_grows_by_being_read_is_not_too_long_for_the_network():
     known = base_vocabulary(captions.vocabulary())
-    assert len(read("walks " * 2 + "thrice " * 31, known).words) == MOST_WORDS
+    assert len(read_words("walks " * 2 + "thrice " * 31, known).words) == MOST_WORDS
     with pytest.raises(TextError, match="has 66 words; the network reads 64"):
-        read("thrice " * 33, known)
+        read_words("thrice " * 33, known)
 
 
 def test_a_limb_that_does_not_do_an_act_is_said():
@@ -125,7 +125,7 @@ def test_a_limb_that_does_not_do_an_act_is_said():
         "kicks with the left foot, then waves with the hand": (),
         "claps, then kicks": (),
     }
-    assert {text: read(text, words, {}).notes for text in told} == told
+    assert {text: read_words(text, words, {}).notes for text in told} == told
 
 
 def test_synonyms_lead_from_unknown_words_to_known_ones():
@@ -133,6 +133,6 @@ def test_synonyms_lead_from_unknown_words_to_known_ones():
     table = synonyms()
     assert len(table) > 150 and not known & set(table)
     assert {lemma(part, known) for other in table.values() for part in other.split()} <= known
-    found = read("He marches ahead rapidly, then applauds thrice", sorted(known))
+    found = read_words("He marches ahead rapidly, then applauds thrice", sorted(known))
     assert " ".join(found.words) == "walk ahead quick then clap three time"
     assert found.notes[0] == "'marches' is read as 'walk'" and len(found.notes) == 4

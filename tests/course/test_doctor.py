@@ -46,7 +46,7 @@ def test_a_check_that_breaks_is_a_finding():
 
 
 def test_missing_and_different_packages_are_named(monkeypatch):
-    monkeypatch.setattr(doctor, "required", lambda: ["torch", "anywidget", "tqdm"])
+    monkeypatch.setattr(doctor, "required_packages", lambda: ["torch", "anywidget", "tqdm"])
     monkeypatch.setattr(
         doctor, "constraints", lambda: {"torch": "2.13.0", "anywidget": "0.11.0", "tqdm": "4.70.1"}
     )

@@ -168,7 +168,7 @@ def test_unknown_names_are_refused():
 
 def test_stretched_bones_are_coloured_and_a_torn_figure_is_told_its_width():
     poses = BODY.to_positions(X0[:1])[0].numpy()
-    figure = viz.stretched({"truth": poses, "torn": 10 * poses}, "two rows", n=3)
+    figure = viz.pose_rows({"truth": poses, "torn": 10 * poses}, "two rows", n=3)
     assert caption(figure) == "two rows" and len(figure.axes) == 2 * 3 + 1
     colours = [
         {tuple(np.round(line.get_color(), 1)) for line in axis.lines if len(line.get_xdata()) == 2}
@@ -184,11 +184,11 @@ def test_stretched_bones_are_coloured_and_a_torn_figure_is_told_its_width():
 def test_poses_have_their_seconds_and_what_is_too_wide_is_cut():
     poses = np.zeros((41, 21, 3))
     poses[:, 5, 0] = 4.0  # a joint 4 m beside the hips
-    figure = viz.stretched({"torn": poses}, "words", n=3, fps=20, widest=3)
+    figure = viz.pose_rows({"torn": poses}, "words", n=3, fps=20, widest=3)
     assert [axis.get_title() for axis in figure.axes[:3]] == ["0.0 s", "1.0 s", "2.0 s"]
     assert figure.axes[0].get_xlim() == (1.5, -1.5)
     assert [text.get_text() for text in figure.axes[0].texts] == ["torn\n(shows 3.0 m of 8.0 m)"]
-    assert [axis.get_title() for axis in viz.stretched({"torn": poses}, "words", n=3).axes[:3]] == [
+    assert [axis.get_title() for axis in viz.pose_rows({"torn": poses}, "words", n=3).axes[:3]] == [
         "",
         "",
         "",

@@ -47,7 +47,7 @@ def run(tmp_path_factory) -> tuple[nbformat.NotebookNode, Path]:
     )
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("MOTIONDIFF_CACHE", str(folder / "cache"))
-        return prepared.prepared(path, folder), path
+        return prepared.prepare_notebook(path, folder), path
 
 
 def outputs(cell) -> dict:
@@ -78,16 +78,16 @@ def test_imports_and_solutions_are_folded_and_nothing_else_but_the_figure(run):
 
 def test_a_second_demo_runs_nothing(run, monkeypatch):
     monkeypatch.setenv("MOTIONDIFF_CACHE", str(run[1].parent / "cache"))
-    monkeypatch.setattr(prepared, "executed", lambda *_: pytest.fail("it was run again"))
-    again = prepared.prepared(run[1], run[1].parent)
+    monkeypatch.setattr(prepared, "run_cells", lambda *_: pytest.fail("it was run again"))
+    again = prepared.prepare_notebook(run[1], run[1].parent)
     assert [c.source for c in again.cells] == [c.source for c in run[0].cells]
 
 
 def test_a_changed_notebook_is_run_again_and_the_old_one_is_not_kept(place, monkeypatch):
-    monkeypatch.setattr(prepared, "executed", lambda notebook, *_: notebook)
+    monkeypatch.setattr(prepared, "run_cells", lambda notebook, *_: notebook)
     for source in ("x = 1", "x = 2"):
         write(place, cell(source))
-        assert prepared.prepared(place, place.parent).cells[0].source == source
+        assert prepared.prepare_notebook(place, place.parent).cells[0].source == source
     assert len(list((place.parent / "cache").iterdir())) == 1
 
 
@@ -122,7 +122,7 @@ def test_an_error_is_told_in_words_and_the_notebook_opens_as_it_is(place, capsys
     write(place, cell("1 / 0"))
     before = place.read_bytes()
     with pytest.raises(prepared.PreparationError, match="07_shown stopped with ZeroDivisionError"):
-        prepared.prepared(place, place.parent)
+        prepared.prepare_notebook(place, place.parent)
     demo.prepare(place, tmp_path / "jupyter")
     assert "It opens without outputs" in capsys.readouterr().out and place.read_bytes() == before
 
@@ -147,9 +147,9 @@ def test_a_kernel_that_dies_or_hangs_leaves_the_notebook_as_it_is(
 
 def test_where_nothing_can_be_kept_it_is_shown_all_the_same(place, monkeypatch, capsys):
     (place.parent / "cache").write_text("a file where the folder should be")
-    monkeypatch.setattr(prepared, "executed", lambda notebook, *_: notebook)
+    monkeypatch.setattr(prepared, "run_cells", lambda notebook, *_: notebook)
     write(place, cell("x = 1"))
-    assert prepared.prepared(place, place.parent).cells[0].source == "x = 1"
+    assert prepared.prepare_notebook(place, place.parent).cells[0].source == "x = 1"
     assert "cannot be kept" in capsys.readouterr().out
 
 

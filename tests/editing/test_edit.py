@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-import torch
+from seeds import seeded
 from small_dancers import small_inbetweener
 from synthetic_walk import walk
 
@@ -23,10 +23,6 @@ T, HAND = 24, joint_index("RightHand")
 @pytest.fixture(scope="module")
 def motion() -> np.ndarray:
     return walk(frames=T, turn=0.6)[0]
-
-
-def seeded(seed: int = 0) -> torch.Generator:
-    return torch.Generator().manual_seed(seed)
 
 
 def test_what_is_known_follows_from_pins_and_the_part_that_is_kept(motion):

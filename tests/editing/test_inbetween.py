@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from seeds import seeded
 from small_dancers import small_inbetweener
-from walked_clips import clip, seeded
+from walked_clips import clip
 
 from data_synth.walking import random_control, walk
 from motiondiff_edu.editing.inbetween import clean_samples, inbetween

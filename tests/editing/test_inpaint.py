@@ -6,15 +6,16 @@ from functools import partial
 import numpy as np
 import pytest
 import torch
+from seeds import seeded
 from small_dancers import dancer_of_bands as dancer
-from walked_clips import clip, seeded
+from walked_clips import clip
 
 from data_synth.walking import walk
 from motiondiff_edu.ddpm import ddim_steps, final, timesteps
 from motiondiff_edu.editing import inpaint as module
-from motiondiff_edu.editing.inpaint import blend, fading, guide_and_blend, inpaint
+from motiondiff_edu.editing.inpaint import blend, fade_lengths, guide_and_blend, inpaint
 from motiondiff_edu.editing.masks import PARTS, body_part, gap, keyframes, seed
-from motiondiff_edu.inbetweening import resampled
+from motiondiff_edu.inbetweening import resampling_steps
 from motiondiff_edu.metrics.keyframes import seam_jump
 from motiondiff_edu.mofusion import MoFusion
 from motiondiff_edu.motion.dance_frame import Place, to_features, to_positions
@@ -86,14 +87,14 @@ def test_blending_and_guidance_close_the_seam(monkeypatch):
     jumps = [seam_jump(x, known).mean() for x in (printed, blended, both)]
     assert max(jumps[1:]) < 0.5 * jumps[0]
     assert np.abs(both - blended).max() > 1e-3
-    again = resampled(timesteps(one.schedule.S, 5), 2)
+    again = resampling_steps(timesteps(one.schedule.S, 5), 2)
     assert np.abs(made(blend, steps=again) - blended).max() > 1e-3
     ends = []
     for frames in (2, 10):
         monkeypatch.setattr(module, "FADE", frames)
         ends.append(made(blend, seed(40, 10)))
     assert np.abs(ends[0] - ends[1])[:, 10:20].max() > 1e-3
-    fade = fading(10).reshape(21, 3)
+    fade = fade_lengths(10).reshape(21, 3)
     assert fade[0].tolist() == [np.inf, 10, np.inf] and bool((fade[1:] == 10).all())
 
 

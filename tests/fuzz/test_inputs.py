@@ -11,7 +11,7 @@ from hypothesis.extra.numpy import array_shapes, arrays
 from synthetic_walk import walk
 
 from motiondiff_edu._commands.control_words import ControlError, parse
-from motiondiff_edu.conditions.text import TextError, read
+from motiondiff_edu.conditions.text import TextError, read_words
 from motiondiff_edu.widgets.editor import Editor
 from motiondiff_edu.widgets.player import Look, Player
 
@@ -25,7 +25,7 @@ WORDS = st.lists(
 def test_texts(text):
     with bounded():
         try:
-            found = read(text, VOCABULARY)
+            found = read_words(text, VOCABULARY)
         except TextError as error:
             assert len(str(error)) < 1500
         else:

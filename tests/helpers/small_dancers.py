@@ -3,6 +3,8 @@
 They move like noise; how they are called is the same as for trained ones.
 """
 
+from dataclasses import replace
+
 import torch
 
 from motiondiff_edu.ddpm import cosine_schedule
@@ -21,7 +23,7 @@ HEARS = MoFusionConfig(C=5, S=30, widths=(16, 24), heads=2, music_layers=1, targ
 
 def dancer_to_mel(**changes) -> Dancer:
     torch.manual_seed(0)
-    model = MoFusion(MoFusionConfig(**{**TINY.as_dict(), **changes}))
+    model = MoFusion(replace(TINY, **changes))
     with torch.no_grad():
         for weight in model.parameters():
             weight.add_(0.1 * torch.randn(weight.shape))
@@ -34,7 +36,7 @@ def dancer_to_mel(**changes) -> Dancer:
 
 def dancer_of_bands(C: int = 0) -> Dancer:
     torch.manual_seed(0)
-    model = MoFusion(MoFusionConfig(**{**HEARS.as_dict(), "C": C})).eval().requires_grad_(False)
+    model = MoFusion(replace(HEARS, C=C)).eval().requires_grad_(False)
     for weight in model.parameters():
         weight.add_(0.1 * torch.randn(weight.shape))
     scalers = Scaler(torch.zeros(63), torch.full((63,), 0.2)), Scaler.nothing(C)

@@ -5,7 +5,7 @@ import torch
 
 from data_synth.actions import captions
 from motiondiff_edu.beyond import timeline
-from motiondiff_edu.conditions.clip import Clip
+from motiondiff_edu.conditions.clip import ClipModel
 from motiondiff_edu.conditions.text import base_vocabulary
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.motion.moving_frame import D
@@ -41,7 +41,7 @@ def mover_of(
     config: TextMoFusionConfig = SMALL,
     scaler: Scaler = SPREAD,
     card: dict | None = None,
-    clip: Clip | None = None,
+    clip: ClipModel | None = None,
 ) -> Mover:
     torch.manual_seed(0)
     model = network(config)

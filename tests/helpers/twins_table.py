@@ -536,7 +536,9 @@ def _ridge_by_dropout(xx, xy, past, alpha_bar) -> torch.Tensor:
     """
     clip = Windows(torch.zeros(9, 1), torch.zeros(9, 3), torch.arange(2), past, 1, *[UNIT] * 2)
     clean = linear_dropout.Products(xx, xy, torch.eye(1).double(), clip)
-    dropped = linear_dropout.expected(clean, linear_dropout.noised(1.0, torch.tensor([alpha_bar])))
+    dropped = linear_dropout.expected_products(
+        clean, linear_dropout.noise_moments(1.0, torch.tensor([alpha_bar]))
+    )
     return torch.linalg.solve(dropped.xx, dropped.xy)
 
 

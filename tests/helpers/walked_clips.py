@@ -1,14 +1,9 @@
 """A walk to edit, and the generators of its edits."""
 
 import numpy as np
-import torch
 
 from data_synth.walking import random_control, walk
 from motiondiff_edu.motion.root_frame import to_world
-
-
-def seeded(seed: int = 0) -> torch.Generator:
-    return torch.Generator().manual_seed(seed)
 
 
 def clip(T: int = 40) -> np.ndarray:

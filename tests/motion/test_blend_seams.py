@@ -10,8 +10,8 @@ from motiondiff_edu.motion.cleanup import (
     LONGEST,
     SECONDS,
     blend_seams,
-    continued,
-    fading,
+    continue_smoothly,
+    fade_out,
     seconds_for,
 )
 
@@ -21,13 +21,13 @@ N = round(20 * SECONDS)
 def test_the_offset_fades_from_its_value_and_its_slope_to_nothing():
     offset, speed = np.array([[1.0, -2.0, 0.0]]), np.array([[0.0, 0.3, 0.5]])
     fine = 1000  # frames: the polynomial and its derivatives, nearly continuous
-    found = fading(offset, speed / fine, fine)
+    found = fade_out(offset, speed / fine, fine)
     np.testing.assert_allclose(found[0], offset)
     np.testing.assert_allclose((found[1] - found[0]) * fine, speed, atol=2e-2)
     end = found[-5:, 0]
     for order in range(4):  # value and three derivatives by the frame
         assert np.abs(np.diff(end, n=order, axis=0)).max() < 1e-8
-    assert fading(offset, speed, 10).shape == (10, 1, 3)
+    assert fade_out(offset, speed, 10).shape == (10, 1, 3)
 
 
 def poses(seed: int, frames: int = 60) -> np.ndarray:
@@ -37,7 +37,7 @@ def poses(seed: int, frames: int = 60) -> np.ndarray:
 
 def test_the_first_frame_goes_on_as_the_past_did():
     past, new = poses(1)[:10], poses(2)[25:55]
-    made = continued(past[-2:], new, 20)
+    made = continue_smoothly(past[-2:], new, 20)
     step, expected = made[0] - past[-1], (past[-1] - past[-2] + new[1] - new[0]) / 2
     assert np.abs(step - expected).max() < 0.02  # metres; directions are set to length one
     assert np.abs(new[0] - past[-1]).max() > 3 * np.abs(step).max()
@@ -47,7 +47,7 @@ def test_the_first_frame_goes_on_as_the_past_did():
 
 def test_what_does_not_jump_stays_nearly_as_it_is():
     whole = poses(1)
-    made = continued(whole[18:20], whole[20:], 20)
+    made = continue_smoothly(whole[18:20], whole[20:], 20)
     assert np.abs(made - whole[20:]).max() < 0.03
 
 
@@ -61,7 +61,7 @@ def test_a_joint_that_has_far_to_go_gets_more_time(far, seconds):
 def test_nobody_flies_down_from_where_they_hang():
     """Poses a metre lower: the pelvis is there after a second, and never faster than 3 m/s."""
     past, new = poses(1)[:10], poses(1)[10:50] - [0.0, 1.0, 0.0]
-    down = np.concatenate([past[-1:], continued(past[-2:], new, 20)])[:, 0, 1]
+    down = np.concatenate([past[-1:], continue_smoothly(past[-2:], new, 20)])[:, 0, 1]
     assert 20 * np.abs(np.diff(down)).max() < 3.0
     np.testing.assert_allclose(down[21:], new[20:, 0, 1])
 
@@ -69,7 +69,7 @@ def test_nobody_flies_down_from_where_they_hang():
 @pytest.mark.parametrize("frames", [1, 2, 5])
 def test_few_frames_are_joined_too(frames):
     past, new = poses(1)[:10], poses(2)[25 : 25 + frames]
-    made = continued(past[-2:], new, 20)
+    made = continue_smoothly(past[-2:], new, 20)
     assert made.shape == new.shape and np.isfinite(made).all()
 
 

@@ -9,8 +9,8 @@ from foreign_walk import foreign, without
 from motiondiff_edu.motion.formats.bvh import BvhError, read_bvh
 from motiondiff_edu.motion.formats.dialects import (
     check_mapping,
+    common_prefix,
     guess_mapping,
-    shared,
     without_shared,
 )
 from motiondiff_edu.motion.retarget import load_clip, retarget
@@ -142,7 +142,10 @@ def test_what_names_share_is_left_out_and_nothing_else():
 def test_names_without_end_take_no_memory():
     """Of each name all beginnings are compared."""
     names = ["_" * 100_000 + end for end in "abc"]
-    assert len(shared(names)) <= 200 and shared(["a_" * 3 + end for end in "xyz"]) == "a_a_a_"
+    assert (
+        len(common_prefix(names)) <= 200
+        and common_prefix(["a_" * 3 + end for end in "xyz"]) == "a_a_a_"
+    )
 
 
 def test_hips_without_a_name_are_where_the_legs_meet(tmp_path):

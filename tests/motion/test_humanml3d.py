@@ -164,7 +164,7 @@ def test_a_recorded_dance_comes_back(real_data):
             with pytest.raises(MotionError, match="is no figure in metres"):
                 humanml3d.check_vectors(small[first : first + 40])
             with pytest.raises(MotionError, match=f"use those of the {own}"):
-                humanml3d.unstandardised(small[first : first + 40], statistics(other))
+                humanml3d.unstandardise(small[first : first + 40], statistics(other))
 
 
 def test_the_left_hip_is_on_the_left_of_a_figure_that_walks_ahead():
@@ -238,9 +238,9 @@ def test_standardised_numbers_are_refused_and_undone_by_their_own_statistics(who
     small = (vectors - own.mean) / own.std
     with pytest.raises(MotionError, match="walk is no figure in metres.*standardised"):
         humanml3d.check_vectors(small, "walk")
-    np.testing.assert_allclose(humanml3d.unstandardised(small, own), vectors, atol=1e-12)
+    np.testing.assert_allclose(humanml3d.unstandardise(small, own), vectors, atol=1e-12)
     with pytest.raises(MotionError, match=f"statistics of the {other.kind}; use .* the {whose}"):
-        humanml3d.unstandardised(small, other)
+        humanml3d.unstandardise(small, other)
 
 
 @pytest.mark.parametrize("factor, told", [(25, "large"), (1 / 25, "small")])
@@ -467,7 +467,7 @@ def test_a_mirrored_clip_is_the_mirror_image(folder):
     plain, mirrored = read[0].motion.positions, read[2].motion.positions
     left, right = (joint_index(s + "Foot") for s in ("Left", "Right"))
     np.testing.assert_allclose(mirrored[:, left], plain[:, right] * [-1, 1, 1], atol=1e-9)
-    assert humanml3d_folder.recording("M000021") == humanml3d_folder.recording("000021")
+    assert humanml3d_folder.recording_of("M000021") == humanml3d_folder.recording_of("000021")
     names = [c.name for c in humanml3d_folder.read_clips(folder, "train", mirrored=False)]
     assert names == ["000021", "000021", "000007"]
 

@@ -13,7 +13,7 @@ from motiondiff_edu.motion.inverse_kinematics import (
     descendants,
     drag,
     fabrik,
-    towed,
+    tow_limb,
     two_bones,
 )
 from motiondiff_edu.motion.root_frame import to_world
@@ -109,10 +109,10 @@ def test_fabrik_with_the_end_on_its_neighbour_keeps_the_bone():
 def test_a_towed_hand_points_along_the_shaft():
     limb = np.array([[0.0, 0, 0], [0.3, 0, 0], [0.5, 0.15, 0], [0.6, 0.15, 0]])
     target = np.array([0.2, 0.4, 0.2])
-    found = towed(limb, target, BENDS)
+    found = tow_limb(limb, target, BENDS)
     np.testing.assert_allclose(found[3], target, atol=1e-8)
     assert np.linalg.norm(found[3] - found[2]) == pytest.approx(0.1)
-    back = towed(limb, limb[2], BENDS)  # the tip to where the wrist is: the wrist makes way
+    back = tow_limb(limb, limb[2], BENDS)  # the tip to where the wrist is: the wrist makes way
     np.testing.assert_allclose(back[2:], [[0.4, 0.15, 0], [0.5, 0.15, 0]], atol=1e-8)
 
 

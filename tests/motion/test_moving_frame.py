@@ -42,7 +42,7 @@ def test_a_mirrored_motion_has_mirrored_features(motions):
     for positions in motions[:4]:
         features = torch.from_numpy(moving_frame.to_features(positions))
         wanted = moving_frame.to_features(mirror(positions))
-        np.testing.assert_allclose(moving_frame.mirrored(features), wanted, atol=1e-8)
+        np.testing.assert_allclose(moving_frame.mirror_features(features), wanted, atol=1e-8)
 
 
 def test_moves_are_those_of_the_world_for_a_figure_that_does_not_turn(motions):

@@ -6,7 +6,7 @@ import pytest
 import motiondiff_edu as md
 from data_synth.walking import walk
 from motiondiff_edu.motion.skeleton import joint_index
-from motiondiff_edu.performers.joined import leg_size, resized
+from motiondiff_edu.performers.continuation import leg_size, resize_motion
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +27,7 @@ def test_the_size_is_that_of_the_legs(walked):
 
 
 def test_a_resized_motion_has_its_path_and_its_contacts(walked):
-    small = resized(walked, 0.7)
+    small = resize_motion(walked, 0.7)
     np.testing.assert_allclose(small.root, walked.root * [0.7, 0.7, 1.0])
     np.testing.assert_allclose(small.control, walked.control * [0.7, 0.7, 1.0], atol=1e-9)
     assert np.array_equal(small.contacts, walked.contacts) and small.fps == walked.fps
@@ -38,7 +38,7 @@ def test_a_child_walks_as_the_figure_of_the_course_does(walked, size):
     """As fast as it was asked to, with its feet on the floor."""
     control = md.joystick([(2, 1.0, 0, 0.2)])
     of_course = md.load("walker").walk(walked, control / [size, size, 1.0], progress=False)
-    own = md.load("walker").walk(resized(walked, size), control, progress=False)
+    own = md.load("walker").walk(resize_motion(walked, size), control, progress=False)
     np.testing.assert_allclose(own.positions, size * of_course.positions, atol=1e-3)
     assert np.abs(own.positions[..., 1].min(1)).max() < 0.02
     way = np.linalg.norm(np.diff(own.positions[:, 0, [0, 2]], axis=0), axis=1).sum()
@@ -48,7 +48,7 @@ def test_a_child_walks_as_the_figure_of_the_course_does(walked, size):
 def test_a_child_is_edited_as_the_figure_of_the_course_is(walked):
     made = [
         md.edit(one, "walks forward while clapping", progress=False)
-        for one in (walked, resized(walked, 0.7))
+        for one in (walked, resize_motion(walked, 0.7))
     ]
     lowest = [one.positions[..., 1].min(1).mean() for one in made]
     assert lowest[1] < 0.7 * lowest[0] + 0.01

@@ -32,7 +32,7 @@ def folder(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def tiny(folder) -> clip.Clip:
+def tiny(folder) -> clip.ClipModel:
     return clip.load(folder)
 
 

@@ -8,12 +8,16 @@ import numpy as np
 import pytest
 import torch
 from devices import devices_of
+from seeds import seeded
 from synthetic_dance import windows
 from torch import nn
 
 from motiondiff_edu import ddpm
-from motiondiff_edu.baselines.regression import regression_loss
-from motiondiff_edu.baselines.transformer import DanceTransformer, TransformerConfig
+from motiondiff_edu.baselines.transformer import (
+    DanceTransformer,
+    TransformerConfig,
+    regression_loss,
+)
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
 from motiondiff_edu.motion.dance_frame import to_positions
@@ -45,10 +49,6 @@ def dancer(config=UNET) -> Dancer:
 
 def mel(B: int = 2, M: int = 64) -> torch.Tensor:
     return torch.randn(B, M, 5, generator=torch.Generator().manual_seed(5))
-
-
-def seeded(seed: int = 0) -> torch.Generator:
-    return torch.Generator().manual_seed(seed)
 
 
 @pytest.mark.parametrize("steps", [4, None])
@@ -160,11 +160,11 @@ def test_sizes_of_the_transformer_are_checked():
         {"slowest": 0.0},
     ):
         with pytest.raises(ValueError):
-            TransformerConfig(**{**PLAIN.as_dict(), **wrong})
+            replace(PLAIN, **wrong)
 
 
 def test_regression_has_one_dance_for_a_song():
-    one = dancer(TransformerConfig(**{**PLAIN.as_dict(), "deterministic": True}))
+    one = dancer(replace(PLAIN, deterministic=True))
     out = one.dance_mel(mel(), 30, generator=seeded(0))
     assert torch.equal(out, one.dance_mel(mel(), 30, generator=seeded(1)))
     assert not torch.equal(out[0], out[1])
@@ -173,7 +173,7 @@ def test_regression_has_one_dance_for_a_song():
 def test_regression_learns_the_mean_of_what_it_sees():
     """The mean pose is all that dances teach which have nothing to do with their music."""
     made = windows()
-    model = DanceTransformer(TransformerConfig(**{**PLAIN.as_dict(), "deterministic": True}))
+    model = DanceTransformer(replace(PLAIN, deterministic=True))
     draw = seeded()
 
     def loss_fn(model, generator):
@@ -216,7 +216,7 @@ def test_dancing_to_sound(tmp_path: Path):
     """From samples or from a file, the same; `seconds` cuts the sound, and the dance with it."""
     import soundfile
 
-    one = dancer(MoFusionConfig(**{**UNET.as_dict(), "C": 80}))
+    one = dancer(replace(UNET, C=80))
     one = Dancer(
         one.model, one.schedule, one.motion_scaler, Scaler(torch.zeros(80), torch.ones(80))
     )
@@ -320,7 +320,7 @@ def test_a_very_quiet_song_is_danced_to_as_if_it_were_louder():
     ],
 )
 def test_sound_that_cannot_be_danced_to_is_refused_in_words(sound, options, told):
-    one = dancer(MoFusionConfig(**{**UNET.as_dict(), "C": 80}))
+    one = dancer(replace(UNET, C=80))
     with pytest.raises(ValueError, match=told):
         one.dance(sound, **{"sample_rate": 16_000} | options)
 
@@ -349,7 +349,7 @@ def test_all_of_a_dancer_is_moved_and_the_first_one_stays(config):
 def test_all_lies_where_the_dancer_is_and_noise_is_drawn_where_the_generator_is(steps):
     """With another default device, whatever is made without regard to the inputs lands beside
     them."""
-    deterministic = TransformerConfig(**{**PLAIN.as_dict(), "deterministic": True})
+    deterministic = replace(PLAIN, deterministic=True)
     for config in (UNET, PLAIN, replace(UNET, target="eps"), deterministic):
         one = dancer(config)
         here, draw = one.dance_mel(mel(), 30, generator=seeded(), steps=steps), seeded()

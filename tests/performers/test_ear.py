@@ -5,7 +5,7 @@ import pytest
 import torch
 
 from data_synth.music.song import GENRES as SONG_GENRES
-from motiondiff_edu.baselines.hearing_transformer import (
+from motiondiff_edu.baselines.transformer import (
     HearingTransformer,
     HearingTransformerConfig,
 )

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import torch
 from gaits import rest_pose
+from seeds import seeded
 from small_dancers import small_inbetweener
 
 from data_synth.walking import walk
@@ -23,10 +24,6 @@ from motiondiff_edu.pretrained.checkpoints import CheckpointError
 
 T = 24
 WALKED = walk(np.tile([1.2, 0.1, 0.3], (T, 1)), 0).world()
-
-
-def seeded(seed: int = 0) -> torch.Generator:
-    return torch.Generator().manual_seed(seed)
 
 
 def given_first(x: torch.Tensor) -> GivenLines:

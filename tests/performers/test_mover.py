@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
+from seeds import seeded
 from small_movers import PLANNED, SMALL, WORDS, mover_of
 
 import motiondiff_edu as md
@@ -25,10 +26,6 @@ from motiondiff_edu.performers.text_mofusion import TextMoFusion
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.recipes.mover import timeline_of
 from motiondiff_edu.training import TrainState, train_steps
-
-
-def seeded(seed: int = 0) -> torch.Generator:
-    return torch.Generator().manual_seed(seed)
 
 
 @pytest.fixture(scope="module", params=[SMALL, PLANNED], ids=["alone", "planned"])

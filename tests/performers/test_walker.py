@@ -18,7 +18,7 @@ from motiondiff_edu.ddpm import ddim_steps, linear_schedule, sample_steps
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.motion.motion import Motion, MotionWarning
 from motiondiff_edu.motion.scaler import Scaler
-from motiondiff_edu.performers.joined import leg_size
+from motiondiff_edu.performers.continuation import leg_size
 from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.prediction import to_eps
 from motiondiff_edu.rollout import generate

@@ -11,7 +11,7 @@ from data_synth.music.varied import varied_song
 from motiondiff_edu.beyond import hearing
 from motiondiff_edu.conditions.music import log_mel
 from motiondiff_edu.motion.scaler import Scaler
-from motiondiff_edu.performers.ear import Ear, EarConfig, EarOutput, rescaled
+from motiondiff_edu.performers.ear import Ear, EarConfig, EarOutput, rescale_ear
 from motiondiff_edu.recipes import ear as recipes
 from motiondiff_edu.recipes.ear import EarRecipe, drawn_batch, hearing_loss, loss_of_ear, train_ear
 from motiondiff_edu.recipes.songs import (
@@ -140,11 +140,11 @@ def test_an_ear_hears_the_same_by_another_scaler():
     )
     own = Scaler(torch.tensor([1.0, -1, 0]), torch.tensor([0.5, 2, 1]))
     mel, times = torch.randn(1, 30, 3, generator=seeded()), torch.arange(30) / 31.25
-    again = rescaled(ear, own, other)
+    again = rescale_ear(ear, own, other)
     wanted = ear(own.transform(mel), times)
     torch.testing.assert_close(again(other.transform(mel), times), wanted, atol=1e-4, rtol=1e-4)
     assert (ear(other.transform(mel), times) - wanted).abs().max() > 0.1
-    for a, b in zip(rescaled(ear, own, own).parameters(), ear.parameters(), strict=True):
+    for a, b in zip(rescale_ear(ear, own, own).parameters(), ear.parameters(), strict=True):
         assert torch.equal(a, b)
 
 

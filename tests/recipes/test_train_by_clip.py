@@ -34,7 +34,7 @@ SHORT = MoverRecipe("tiny", TINY, steps=6, clips=10, frames=200, no_text=0.2)
 
 
 @pytest.fixture(scope="module")
-def clip(tmp_path_factory) -> clips.Clip:
+def clip(tmp_path_factory) -> clips.ClipModel:
     """With room for captions that are spelled."""
     folder = tiny_clip.made(tmp_path_factory.mktemp("clip"), max_position_embeddings=300)
     return clips.load(folder)

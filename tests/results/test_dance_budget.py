@@ -41,7 +41,7 @@ def tiny(monkeypatch):
         changes = {"target": config.target, "C": config.C}
         if isinstance(config, HearingConfig):
             small = HearingConfig(
-                **TINY.as_dict() | changes, ear_width=EAR.config.width, ear_blocks=EAR.config.blocks
+                **asdict(TINY) | changes, ear_width=EAR.config.width, ear_blocks=EAR.config.blocks
             )
         elif isinstance(config, TransformerConfig):
             small = replace(transformer, deterministic=config.deterministic, **changes)

@@ -76,7 +76,7 @@ def test_what_is_given_of_a_window_does_not_know_what_comes_next(folder, monkeyp
     other = list(continuations.windows(FULL, RANGE))
     for one, again in zip(plain, other, strict=True):
         np.testing.assert_array_equal(one.control, again.control)
-        np.testing.assert_array_equal(one.given.rooted().root, again.given.rooted().root)
+        np.testing.assert_array_equal(one.given.path(), again.given.path())
 
 
 def test_a_window_is_continued_as_walk_continues_it(walker, folder):

@@ -70,7 +70,7 @@ def test_masks_have_joints_downwards_and_seconds_to_the_right():
 def test_given_frames_are_shaded_from_half_a_frame_before_to_half_a_frame_after():
     samples, line = RNG.normal(size=(3, 8)), np.arange(8.0)
     given = np.array([1, 1, 0, 0, 0, 1, 0, 1], bool)
-    fig = viz.over_time(samples, {"the data": line}, given, "w", "height (m)", fps=10)
+    fig = viz.value_over_time(samples, {"the data": line}, given, "w", "height (m)", fps=10)
     (axis,) = fig.axes
     spans = [(patch.get_x(), patch.get_x() + patch.get_width()) for patch in axis.patches]
     np.testing.assert_allclose(spans, [(-0.05, 0.15), (0.45, 0.55), (0.65, 0.75)])

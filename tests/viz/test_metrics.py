@@ -26,7 +26,7 @@ def test_the_dot_stands_where_95_percent_are_reached():
 
 
 def test_seconds_are_drawn_at_their_middle_in_each_panel():
-    fig = viz.over_time(
+    fig = viz.measures_over_time(
         {"bones": {"x": np.array([1.0, 2, 4])}, "off": {"x": np.array([3.0, 1])}},
         "words",
         shade_to=1,
@@ -41,7 +41,7 @@ def test_six_lines_have_six_patterns():
     fig = viz.footstep_curves(curves, "words")
     drawn = [str(line._unscaled_dash_pattern) for line in fig.axes[0].lines[::2]]
     assert len(set(drawn)) == 6
-    over = viz.over_time({"bones": curves}, "words")
+    over = viz.measures_over_time({"bones": curves}, "words")
     assert len(over.axes[0].lines) == 6
 
 

@@ -6,10 +6,10 @@ from synthetic_walk import walk
 
 from motiondiff_edu.widgets import action as action_module
 from motiondiff_edu.widgets.action import UNSEEN, Action
-from motiondiff_edu.widgets.beside import Beside
 from motiondiff_edu.widgets.controls import Controls, steering
 from motiondiff_edu.widgets.path import PathPad
 from motiondiff_edu.widgets.player import Player
+from motiondiff_edu.widgets.still import Beside
 
 
 def test_while_it_acts_it_says_so_and_cannot_be_pressed():

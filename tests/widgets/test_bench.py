@@ -25,7 +25,7 @@ from motiondiff_edu.motion.skeleton import JOINTS, J
 from motiondiff_edu.viz import body
 from motiondiff_edu.widgets import packing, poster
 from motiondiff_edu.widgets.bench import _BYTES, GHOST, HEARD, MODULE, Bench
-from motiondiff_edu.widgets.turn import TURN
+from motiondiff_edu.widgets.live import TURN
 
 T_H = 8
 CLIP = walk(np.tile([1.2, 0.0, 0.6], (31, 1)), seed=6)

@@ -12,8 +12,7 @@ from synthetic_walk import walk
 from motiondiff_edu.viz.over_time import edges_of
 from motiondiff_edu.viz.sound import levels_over_sound
 from motiondiff_edu.viz.style import caption
-from motiondiff_edu.widgets import strips
-from motiondiff_edu.widgets.listening import Listening
+from motiondiff_edu.widgets.listening import Listening, pack_levels
 from motiondiff_edu.widgets.player import Look, Player, Soundtrack
 
 T, SECONDS = 86, 4.3
@@ -54,12 +53,12 @@ def listening(maps, moved):
 
 def test_packed_weights_are_within_one_part_in_510_of_the_rows_largest():
     weights = softmax(np.random.default_rng(0).normal(0, 2, (7, 13)))
-    (level,) = strips.pack_levels(weights, np.arange(13.0))
+    (level,) = pack_levels(weights, np.arange(13.0))
     assert (
         np.abs(level.weights() - weights) <= weights.max(1, keepdims=True) * (1 / 510 + 1e-9)
     ).all()
     assert level.full == pytest.approx(weights.max())
-    assert strips.pack_levels(weights, np.arange(13.0), scale="frame")[0].full is None
+    assert pack_levels(weights, np.arange(13.0), scale="frame")[0].full is None
 
 
 def test_a_column_reaches_halfway_to_its_neighbours():

@@ -106,7 +106,7 @@ SMOOTH = """([roots, t, fps]) =>
 @pytest.mark.parametrize("fps", [10, 20, 25, 60])
 def test_page_and_film_follow_the_figure_with_the_same_calm(browser, fps):
     roots = np.random.default_rng(0).normal(size=(90, 1, 3))
-    source = re.sub("^export ", "", module.joined(("dom", "figures", "paint")), flags=re.M)
+    source = re.sub("^export ", "", module.es_module(("dom", "figures", "paint")), flags=re.M)
     with open_page(browser) as page:
         page.add_script_tag(content=source)
         for t in (3, 40, 88):

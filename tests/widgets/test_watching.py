@@ -45,7 +45,7 @@ def figure(frames=7):
 
 def test_the_reports_come_through_unchanged_and_in_order(places):
     steps = reports(5)
-    assert list(watching.watched(steps, 5, figure, clock=seconds(range(100)))) == steps
+    assert list(watching.watch_training(steps, 5, figure, clock=seconds(range(100)))) == steps
 
 
 def test_a_figure_is_made_at_the_start_every_few_seconds_and_at_the_end(places):
@@ -56,7 +56,7 @@ def test_a_figure_is_made_at_the_start_every_few_seconds_and_at_the_end(places):
         return figure(7 + len(asked))
 
     clock = seconds([0, 3, 5, 5, 6, 8, 9.5, 9.5, 10, 11])  # it is drawn at 5 and at 9.5 seconds
-    list(watching.watched(reports(7), 7, moving, every=4.0, clock=clock))
+    list(watching.watch_training(reports(7), 7, moving, every=4.0, clock=clock))
     player, curve = places
     assert len(asked) == 4  # untrained, after 2 steps, after 5 steps, at the end
     assert isinstance(player.stood[0], Player) and player.stood[-1] is player.stood[0]
@@ -70,26 +70,26 @@ def test_slow_pictures_take_a_quarter_of_the_time_at_most(places):
     moving = lambda: asked.append(1) or figure()  # noqa: E731
     # drawn from 4 s to 14 s, so not before 44 s again
     clock = seconds([0, 4, 14, 20, 30, 43, 44, 54, 60])
-    list(watching.watched(reports(6), 6, moving, every=4.0, clock=clock))
+    list(watching.watch_training(reports(6), 6, moving, every=4.0, clock=clock))
     assert len(asked) == 4  # untrained, at 4 s, at 44 s, at the end
 
 
 def test_the_training_waits_for_nothing_between_two_pictures(places):
     asked = []
     moving = lambda: asked.append(1) or figure()  # noqa: E731
-    list(watching.watched(reports(50), 50, moving, every=4.0, clock=lambda: 0.0))
+    list(watching.watch_training(reports(50), 50, moving, every=4.0, clock=lambda: 0.0))
     assert len(asked) == 2
 
 
 def test_a_run_that_goes_on_counts_its_steps_from_there(places):
-    list(watching.watched(reports(9, first=5), 9, figure, clock=lambda: 0.0))
+    list(watching.watch_training(reports(9, first=5), 9, figure, clock=lambda: 0.0))
     assert list(places[1].stood[-1].axes[0].lines[-1].get_xdata()) == [4, 5, 6, 7, 8]
 
 
 def test_nothing_to_train_leaves_the_untrained_figure(places):
-    assert not list(watching.watched([], 0, figure))
+    assert not list(watching.watch_training([], 0, figure))
     assert len(places) == 1 and "untrained" in places[0].stood[0].description
 
 
 def test_outside_of_a_notebook_it_goes_on_without_pictures():
-    assert len(list(watching.watched(reports(3), 3, figure, every=0.0))) == 3
+    assert len(list(watching.watch_training(reports(3), 3, figure, every=0.0))) == 3

@@ -14,7 +14,7 @@ from torch import Tensor
 
 from ...cross_modal_attention import watch
 from ...ddpm import draw, q_sample
-from ...mofusion import MoFusionConfig
+from ...mofusion import MoFusion, MoFusionConfig
 from ...motion.dance_frame import to_features
 from ...performers.dancer import Dancer
 
@@ -52,7 +52,7 @@ def attention_maps(
     no music.  Source: MoFusion Fig. 4.  Notebook: 12
     """
     model, T = dancer.model, len(dance)
-    if not hasattr(model.config, "widths") or getattr(model, "music", None) is None:
+    if not isinstance(model, MoFusion) or model.music is None:
         raise ValueError(
             f"these maps need a U-Net with music; this dancer has a {type(model).__name__}, "
             f"C = {model.config.C}"

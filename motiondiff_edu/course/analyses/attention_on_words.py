@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 from jaxtyping import Float
-from torch import Tensor
+from torch import Tensor, nn
 
+from ...conditions.clip import ClipModel
 from ...cross_modal_attention import watch
 from ...ddpm import Denoiser, draw, q_sample
 from ...performers.mover import Mover
@@ -56,8 +57,8 @@ def attention_on_words(
     missing plan, or a mover that reads by CLIP.
     """
     words, ids = _read(mover, text, s)
-    denoise = mover.denoiser(ids, len(positions), plan=plan)
-    return WordMaps(words, _seen(mover, denoise, mover.units_of(positions)[None], s, generator))
+    denoise, x0 = mover.denoiser(ids, len(positions), plan=plan), mover.units_of(positions)[None]
+    return WordMaps(words, _seen(mover, denoise, x0, s, generator))
 
 
 @torch.no_grad()
@@ -78,7 +79,7 @@ def attention_of_the_plan(
 
 def _read(mover: Mover, text: str, s: int) -> tuple[tuple[str, ...], Texts]:
     """The words of a text, and what the network takes of them, for step s."""
-    if mover.config.clip:
+    if isinstance(mover.reader, ClipModel):
         raise ValueError("these maps are over words; this mover reads by CLIP")
     if not 1 <= s <= mover.schedule.S:
         raise ValueError(f"this mover's steps are 1 to {mover.schedule.S}, not {s}")
@@ -94,8 +95,9 @@ def _seen(
     generator: torch.Generator | None,
 ) -> dict[str, Float[np.ndarray, "_ M"]]:
     """The maps of all layers that were asked, while x0, noised to step s, is denoised."""
-    x_s = q_sample(x0, s, mover.schedule, draw(x0, generator))
-    with watch(mover.model) as seen:
+    x_s, model = q_sample(x0, s, mover.schedule, draw(x0, generator)), mover.model
+    assert isinstance(model, nn.Module)
+    with watch(model) as seen:
         denoise(x_s, torch.tensor([s], device=mover.device))
     found = {
         name.split("unet.")[-1].removesuffix(".attention"): maps[0][0].mean(0).cpu().numpy()

@@ -14,7 +14,7 @@ from jaxtyping import Bool, Float
 from torch import Tensor
 
 from ...ddpm import Denoiser, Schedule, draw, q_sample
-from ...kinematic_loss import Body, kinematic_parts, over_time
+from ...kinematic_loss import Body, kinematic_parts, weight_by_step
 from ...prediction import target_of, to_x0, x0_from_eps
 
 Predictor = Callable[[Tensor, Tensor, Tensor], Tensor]  # (x_s, s, eps) -> eps_hat
@@ -39,7 +39,7 @@ class LossOverTime:
         Raises ValueError for an unknown weight.
         Notebook: 13
         """
-        weight = over_time(schedule, kind)[list(self.steps)]
+        weight = weight_by_step(schedule, kind)[list(self.steps)]
         parts = [
             {k: v if k == "data" else weight.to(v) * v for k, v in x.items()}
             for x in (self.value, self.gradient)

@@ -64,7 +64,7 @@ def plain(name: str) -> str:
 
 def without_shared(names: Sequence[str]) -> list[str]:
     """The names without the beginning and the end that half of them share, as CC_Base_ or _jnt."""
-    start, end = (shared(words) for words in (names, [name[::-1] for name in names]))
+    start, end = (common_prefix(words) for words in (names, [name[::-1] for name in names]))
     bare = [name.removeprefix(start).removesuffix(end[::-1]) for name in names]
     return [short or name for short, name in zip(bare, names, strict=True)]
 
@@ -75,7 +75,7 @@ def by_plain(names: Sequence[str]) -> dict[str, str]:
     return {plain(word): name for word, name in reversed(list(zip(bare, names, strict=True)))}
 
 
-def shared(names: Iterable[str]) -> str:
+def common_prefix(names: Iterable[str]) -> str:
     """The longest beginning, up to the end of a word, that half of the names have; or ""."""
     names = [name[:LONGEST_NAME] for name in names]
     starts = Counter(
@@ -155,9 +155,9 @@ def by_hierarchy(mapping: Mapping[str, str], bvh: Bvh) -> dict[str, str]:
     """
     found = {}
     if "Hips" not in mapping and {"LeftUpLeg", "RightUpLeg"} <= mapping.keys():
-        found["Hips"] = meeting(bvh, mapping["LeftUpLeg"], mapping["RightUpLeg"])
+        found["Hips"] = lowest_common_node(bvh, mapping["LeftUpLeg"], mapping["RightUpLeg"])
     if "Head" not in mapping and {"LeftArm", "RightArm"} <= mapping.keys():
-        chest = meeting(bvh, mapping["LeftArm"], mapping["RightArm"])
+        chest = lowest_common_node(bvh, mapping["LeftArm"], mapping["RightArm"])
         arms = [mapping["LeftArm"], mapping["RightArm"]]
         taken = {*arms, *(name for arm in arms for name in ancestors(bvh, arm)), *mapping.values()}
         tops = {}
@@ -170,7 +170,7 @@ def by_hierarchy(mapping: Mapping[str, str], bvh: Bvh) -> dict[str, str]:
     return {joint: name for joint, name in found.items() if name}
 
 
-def meeting(bvh: Bvh, first: str, second: str) -> str:
+def lowest_common_node(bvh: Bvh, first: str, second: str) -> str:
     """The lowest node that both hang on; "" for none."""
     above = ancestors(bvh, second)
     return next((name for name in ancestors(bvh, first) if name in above), "")

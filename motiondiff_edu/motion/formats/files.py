@@ -14,11 +14,12 @@ from typing import Any
 import numpy as np
 
 from ..._files import replacing
-from .. import recordings, registry
+from .. import registry
 from ..check import lies_down, unit_of, unlike_a_body
 from ..checks import check_there
 from ..clip import Clip
 from ..motion import Motion, MotionError, MotionWarning, checked_path
+from ..recordings import recordings
 from ..retarget import load_clip
 from ..root_frame import FPS
 from ..skeleton import COURSE, JOINTS, Skeleton

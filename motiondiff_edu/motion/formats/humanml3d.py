@@ -216,7 +216,7 @@ def _row(array: np.ndarray, name: str) -> Float[np.ndarray, "263"]:
     return array.astype(np.float64)
 
 
-def unstandardised(
+def unstandardise(
     vectors: Float[np.ndarray, "T 263"], statistics: Statistics, name: str = "the array"
 ) -> Float[np.ndarray, "T 263"]:
     """The numbers of a standardised array: vectors * std + mean.
@@ -232,7 +232,7 @@ def unstandardised(
 def check_shape(vectors: np.ndarray, name: str = "the array") -> None:
     """Raise MotionError unless these are rows of 263 numbers without NaN."""
     if vectors.ndim != 2 or vectors.shape[1] != NUMBERS or not len(vectors):
-        raise MotionError(f"{name} {described(vectors)}")
+        raise MotionError(f"{name} {describe_array(vectors)}")
     check_numbers(vectors, name)
 
 
@@ -253,7 +253,7 @@ def check_vectors(vectors: np.ndarray, name: str = "the array") -> None:
         raise MotionError(
             f"{name} is no figure in metres: its thighs and shanks are {_listed(usual)} m long and "
             f"vary by {_listed(spread)} m. The numbers are probably standardised; undo that with "
-            f"the mean and std that they were made with: humanml3d.unstandardised(vectors, "
+            f"the mean and std that they were made with: humanml3d.unstandardise(vectors, "
             f"humanml3d.read_statistics('Mean.npy', 'Std.npy'))"
         )
     size = scale_of_root(vectors)
@@ -290,7 +290,7 @@ def check_numbers(array: np.ndarray, name: str) -> None:
         )
 
 
-def described(array: np.ndarray) -> str:
+def describe_array(array: np.ndarray) -> str:
     """What an array holds that is no motion of HumanML3D, and what to do."""
     shape = array.shape
     if shape == (NUMBERS,):
@@ -345,7 +345,7 @@ def joints_in(path: Path) -> tuple[Float[np.ndarray, "T 22 3"], str]:
     array = load_array(path)
     fits = array.ndim == 2 and array.shape[1] == NUMBERS
     if not (fits or array.shape[1:] == (len(HUMANML), 3)) or not len(array):
-        raise MotionError(f"{path.name} {described(array)}")
+        raise MotionError(f"{path.name} {describe_array(array)}")
     check_numbers(array, path.name)
     if fits:
         return joints_of(array, path.name), f"HumanML3D, {NUMBERS} numbers a frame"

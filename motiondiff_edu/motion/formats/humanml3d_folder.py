@@ -47,7 +47,7 @@ def is_mirrored(name: str) -> bool:
     return name.startswith("M")
 
 
-def recording(name: str) -> str:
+def recording_of(name: str) -> str:
     """The recording behind a clip: 000021 for 000021 and M000021, which belong in one split."""
     return name.removeprefix("M")
 

@@ -20,7 +20,7 @@ from motiondiff_edu.motion.cleanup import clean_up
 from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.motion.root_frame import FPS, control_from_path, to_root_frame
 from motiondiff_edu.motion.skeleton import J
-from motiondiff_edu.performers.joined import Start, placed
+from motiondiff_edu.performers.continuation import Start, around_seam
 from motiondiff_edu.performers.performer import generators
 from motiondiff_edu.performers.walker import STEPS, Walker
 
@@ -67,7 +67,7 @@ def continued(walker: Walker, window: Window) -> dict[str, Continued]:
     past, steer = start.past.reshape(T_h, -1), start.control
     new = rollout.generate(walker, past[None], steer[None], generator=generators(0, 1), steps=STEPS)
     poses, path = new[0].double().numpy().reshape(-1, J, 3), start.path[T_h:]
-    whole, known = placed(start, poses)
+    whole, known = around_seam(start, poses)
     worlds = {
         "real.": clean_up(whole, FPS, known)[-len(poses) :],
         "real.unblended.": start.in_world(poses),

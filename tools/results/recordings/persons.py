@@ -20,7 +20,7 @@ from motiondiff_edu.metrics.walks import gait_style, style_kept
 from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.motion.root_frame import FPS
 from motiondiff_edu.motion.skeleton import J
-from motiondiff_edu.performers.joined import Start
+from motiondiff_edu.performers.continuation import Start
 from motiondiff_edu.performers.performer import generators
 from motiondiff_edu.performers.walker import STEPS, Walker
 

@@ -38,7 +38,7 @@ class Reader:
 def read_nodes(statements: list[Statement], path: str | Path) -> list[Node]:
     """The nodes in file order; parents come before their children. Raises BvhError."""
     reader = Reader(path)
-    actions = {"{": opened, "}": closed, "offset": offset, "channels": channels}
+    actions = {"{": open_node, "}": close_node, "offset": offset, "channels": channels}
     actions |= {"root": joint, "joint": joint, "end": end_site}
     for statement in statements:
         if statement.word == "hierarchy" and not statement.rest and not reader.nodes:
@@ -48,7 +48,7 @@ def read_nodes(statements: list[Statement], path: str | Path) -> list[Node]:
                 f"'{statement.text[:40]}' is not understood here.", statement.line, current(reader)
             )
         actions[statement.word](reader, statement)
-    return finished(reader, statements[-1].line)
+    return complete_nodes(reader, statements[-1].line)
 
 
 def current(reader: Reader) -> Node | None:
@@ -102,7 +102,7 @@ def add(reader: Reader, node: Node) -> None:
     reader.nodes.append(node)
 
 
-def opened(reader: Reader, statement: Statement) -> None:
+def open_node(reader: Reader, statement: Statement) -> None:
     """Read '{': the next statements belong to the node that was just named."""
     if reader.waiting is None:
         raise reader.error(
@@ -112,7 +112,7 @@ def opened(reader: Reader, statement: Statement) -> None:
     reader.waiting = None
 
 
-def closed(reader: Reader, statement: Statement) -> None:
+def close_node(reader: Reader, statement: Statement) -> None:
     """Read '}': the innermost node ends, and must be complete."""
     node = current(reader)
     if node is None:
@@ -171,7 +171,7 @@ def channels(reader: Reader, statement: Statement) -> None:
     node.channels = tuple(SPELLED[name.lower()] for name in names)
 
 
-def finished(reader: Reader, line: int) -> list[Node]:
+def complete_nodes(reader: Reader, line: int) -> list[Node]:
     """The nodes after every brace is closed; end sites get names that no joint has."""
     if reader.open or reader.waiting is not None:
         node = reader.nodes[reader.waiting if reader.waiting is not None else reader.open[-1]]

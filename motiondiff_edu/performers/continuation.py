@@ -24,8 +24,8 @@ from ..motion.cleanup import clean_up
 from ..motion.motion import Motion, MotionError
 from ..motion.planting import SHANK, THIGH
 from ..motion.root_frame import FPS, root_path, to_world
-from ..motion.scaler import Scaler
 from ..motion.skeleton import JOINTS, PARENTS, J, joint_index
+from ..rollout import Units
 
 # m in a frame more than in the two frames on either side: a jump at the seam that is said; from a
 # synthetic walk no joint goes 3 cm farther
@@ -56,17 +56,16 @@ class Start:
     @classmethod
     def of(cls, motion: Motion, control: Float[np.ndarray, "n 3"], T_h: int) -> "Start":
         """From the last T_h frames of a motion at 20 frames/s on.  Raises MotionError for fewer."""
-        given = motion.rooted()
-        clip = given.to_clip()
+        clip = motion.to_clip()
         if len(clip) < T_h:
             raise MotionError(
                 f"{motion.name} has {len(clip)} frames; the walker needs at least {T_h} "
                 f"({T_h / FPS:g} s) to continue it"
             )
         rows = splice(clip.control, control, T_h)
-        place, heading = root_path(rows, tuple(given.root[-T_h]))
+        place, heading = root_path(rows, tuple(motion.path()[-T_h]))
         path = np.column_stack([place, heading])
-        return cls(given.positions, clip.poses[-T_h:], rows, path)
+        return cls(motion.positions, clip.poses[-T_h:], rows, path)
 
     def in_world(self, new: Float[np.ndarray, "n 21 3"]) -> Float[np.ndarray, "n 21 3"]:
         """New frames of the root frame, placed in the world."""
@@ -74,20 +73,20 @@ class Start:
         return whole[len(self.past) :]
 
 
-def joined(
+def finish_continuation(
     start: Start, new: Float[np.ndarray, "T 21 3"]
 ) -> tuple[Float[np.ndarray, "T 21 3"], float]:
     """New frames in the world, and how much farther a joint stepped at the seam than beside it.
 
     The step is that of the network (m), before the clean-up.
     """
-    whole, known = placed(start, new)
+    whole, known = around_seam(start, new)
     k = len(whole) - len(new)
     jump = seam_step(whole, k) if 2 <= k < len(whole) - 1 else 0.0
     return clean_up(whole, FPS, known)[k:], jump
 
 
-def placed(
+def around_seam(
     start: Start, new: Float[np.ndarray, "T 21 3"]
 ) -> tuple[Float[np.ndarray, "T2 21 3"], Bool[np.ndarray, "T2 21"]]:
     """A second of what is given and all new frames, in the world, and which joints are given."""
@@ -99,7 +98,7 @@ def placed(
 
 
 def unlike_training(
-    scaler: Scaler, past: Float[Tensor, "T D"], known: Bool[np.ndarray, "T J"] | None = None
+    scaler: Units, past: Float[Tensor, "T D"], known: Bool[np.ndarray, "T J"] | None = None
 ) -> dict[str, float]:
     """Joints that are far from the training's poses, in its standard deviations, farthest first.
 
@@ -178,7 +177,7 @@ def leg_size(positions: Float[np.ndarray, "T 21 3"]) -> float:
     return 1.0 if abs(size - 1) < SAME else size
 
 
-def resized(motion: Motion, factor: float) -> Motion:
+def resize_motion(motion: Motion, factor: float) -> Motion:
     """The motion with all lengths times `factor`: a figure of another size, and its path."""
     root = None if motion.root is None else motion.root * [factor, factor, 1.0]
     return replace(motion, positions=factor * motion.positions, root=root)

@@ -18,14 +18,14 @@ from motiondiff_edu.motion.motion import Motion, MotionWarning
 from motiondiff_edu.motion.root_frame import control_from_path, to_root_frame
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import JOINTS, TOES, joint_index
-from motiondiff_edu.performers.joined import (
+from motiondiff_edu.performers.continuation import (
     OFF_FLOOR,
     UNLIKE,
     Start,
+    around_seam,
     change_of,
+    finish_continuation,
     in_words,
-    joined,
-    placed,
     unlike_training,
 )
 
@@ -65,7 +65,7 @@ def sliding(more: Motion) -> float:
 
 def as_the_network_says(monkeypatch) -> None:
     """Without the clean-up."""
-    monkeypatch.setattr("motiondiff_edu.performers.joined.clean_up", lambda whole, *_: whole)
+    monkeypatch.setattr("motiondiff_edu.performers.continuation.clean_up", lambda whole, *_: whole)
 
 
 def without_blending(monkeypatch) -> None:
@@ -89,7 +89,7 @@ def test_a_usual_walk_keeps_its_body_and_stands_and_nothing_is_said(walker, usua
 
 def test_what_is_given_is_marked_up_to_its_last_frame(usual):
     start = Start.of(usual, AHEAD[:5], 10)
-    whole, known = placed(start, start.past[:5])
+    whole, known = around_seam(start, start.past[:5])
     given = (whole[:, None] == usual.positions[-1]).all((1, 2, 3)).nonzero()[0]
     assert given.tolist() == [len(whole) - 6]  # the last given frame, and then 5 new ones
     assert known[:-5].all() and not known[-5:].any()
@@ -183,10 +183,10 @@ def test_a_jump_is_measured_before_it_is_joined():
     new = given[-1] + 0.01 * np.arange(1, 31)[:, None, None] * [1.0, 0.0, 0.0]
     still = np.zeros((40, 3))
     start = Start(given, given[-10:], still, still)
-    world, jump = joined(start, new)
+    world, jump = finish_continuation(start, new)
     assert jump == pytest.approx(0.0)
     np.testing.assert_allclose(world[:, 0], new[:, 0])  # legs alone are held where they stand
-    _, jump = joined(start, new + [0.0, 0.0, 0.05])
+    _, jump = finish_continuation(start, new + [0.0, 0.0, 0.05])
     assert jump == pytest.approx(np.hypot(0.01, 0.05) - 0.01)
 
 
