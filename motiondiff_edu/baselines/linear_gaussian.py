@@ -117,7 +117,7 @@ def fit(windows: Windows, ridge: float = 1e-3) -> LinearGaussian:
 def walker_of(
     windows: Windows, weight: Float[Tensor, "F D"], covariance: Float[Tensor, "D D"]
 ) -> LinearGaussian:
-    """The walker with these weights and this covariance of its noise.  Notebook: 09"""
+    """The walker with these weights and this covariance of its noise."""
     noise_factor = torch.linalg.cholesky(
         covariance + 1e-12 * torch.eye(len(covariance), dtype=torch.float64)
     )

@@ -26,7 +26,7 @@ import scipy.ndimage
 import scipy.signal
 from jaxtyping import Bool, Float
 
-from ..motion.checks import check_finite
+from ..motion.check import check_finite
 from ..motion.root_frame import FPS, body_heading, estimate_root, forward_left, to_root_frame
 from ..motion.skeleton import BONE_LENGTHS, HEELS, HIPS, PARENTS, TOES, check_joints, joint_index
 

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from ..motion.checks import check_finite
+from ..motion.check import check_finite
 from ..motion.cleanup import runs
 from ..motion.dance_frame import facing
 from ..motion.root_frame import FPS, forward_left

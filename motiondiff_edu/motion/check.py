@@ -82,3 +82,16 @@ def lies_down(positions: Float[np.ndarray, "T J 3"], skeleton: Skeleton = COURSE
     if axis == 1:
         return f"the figure stands on its head: y points up. If that is wrong, {turn}"
     return f"the figure lies along {'xyz'[axis]}, but y points up: {turn}"
+
+
+def check_finite(values: Float[np.ndarray, "*shape"], name: str) -> None:
+    """Raise ValueError where a value is NaN or infinite.
+
+    A comparison with NaN is False, so a measure that counts would give a plausible wrong number.
+    """
+    bad = np.argwhere(~np.isfinite(values))
+    if len(bad):
+        raise ValueError(
+            f"{name} contain NaN or infinity ({len(bad)} values, the first at index "
+            f"{tuple(bad[0].tolist())}): fill or cut them first"
+        )

@@ -4,9 +4,6 @@ import math
 from numbers import Integral, Real
 from pathlib import Path
 
-import numpy as np
-from jaxtyping import Float
-
 LONGEST = 3600.0  # seconds: an hour
 MOST_SAMPLES = 256  # made at once, in memory
 GUIDANCE = 20  # the largest weight; figures break long before it
@@ -92,16 +89,3 @@ def checked_rate(fps: float, name: str = "fps") -> float:
             f"{name} must be a number of frames a second above 0 and at most 10,000, not {fps!r}"
         )
     return float(fps)
-
-
-def check_finite(values: Float[np.ndarray, "*shape"], name: str) -> None:
-    """Raise ValueError where a value is NaN or infinite.
-
-    A comparison with NaN is False, so a measure that counts would give a plausible wrong number.
-    """
-    bad = np.argwhere(~np.isfinite(values))
-    if len(bad):
-        raise ValueError(
-            f"{name} contain NaN or infinity ({len(bad)} values, the first at index "
-            f"{tuple(bad[0].tolist())}): fill or cut them first"
-        )
