@@ -59,8 +59,7 @@ def frame_dropout(past: Past, rate: float, generator: torch.Generator | None = N
 
 
 def zero_past(past: Past, rate: float, generator: torch.Generator | None = None) -> Past:
-    """The simplest alternative: the whole past of a sample becomes 0 with probability `rate`.
-    """
+    """The simplest alternative: the whole past of a sample becomes 0 with probability `rate`."""
     return past.masked_fill(chosen(len(past), rate, generator).to(past.device)[:, None, None], 0.0)
 
 

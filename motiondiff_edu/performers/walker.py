@@ -42,6 +42,13 @@ register("walker", MoDiff, MoDiffConfig)
 register("walker", FootholdMoDiff, FootholdConfig, build=FootholdMoDiff)
 
 
+def check_upright(motion: Motion) -> None:
+    """Raise MotionError unless it is a whole figure of the course's skeleton that does not lie."""
+    motion.check_whole()
+    if words := lies_down(motion.positions):
+        raise MotionError(f"{motion.name}: {words}")
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Walker(Performer):
     """A trained MoDiff: it continues a past under a velocity control (`walk`), frame by frame.
@@ -84,14 +91,11 @@ class Walker(Performer):
         samples  above 1: a list with this many continuations; the first is that of samples=1
         steps    of DDIM, or None for DDPM with all steps, and noise of variance beta_s
         Raises MotionError for a motion that cannot be continued, ValueError for numbers out of
-        range. Warns where the control goes beyond the training data, and where the poses to
-        continue do, or are off the floor; where the figure would jump, the first half second or
-        more is blended.
+        range. Warns where control or poses go beyond the training data, and where poses are off the
+        floor, or the figure would jump: then the first half second or more is blended.
         Source: MoDiff Alg. 2.  Notebook: 00
         """
-        as_motion(motion).check_whole()
-        if words := lies_down(motion.positions):
-            raise MotionError(f"{motion.name}: {words}")
+        check_upright(as_motion(motion))
         count, T_h = checked_samples(samples), self.config.T_h
         steps = checked_steps(steps, self.schedule.S)
         length = None if seconds is None else round(checked_seconds(seconds) * FPS)
@@ -114,10 +118,8 @@ class Walker(Performer):
         )
         loop = bar("walking", len(ahead), progress)(loop)
         new = self.pose_scaler.inverse(torch.stack([frame.pose for frame in loop], dim=1))
-        both = [
-            finish_continuation(start, one)
-            for one in new.double().cpu().numpy().reshape(count, -1, J, 3)
-        ]
+        drawn = new.double().cpu().numpy().reshape(count, -1, J, 3)
+        both = [finish_continuation(start, one) for one in drawn]
         if words := self._doubts(start, max(jump for _, jump in both), size):
             warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
         path, name = start.path[T_h:], f"{motion.name}, continued"

@@ -40,6 +40,27 @@ EVERY = [
 
 def main() -> None:
     """Run `python -m motiondiff_edu.recipes [NAME ...]`."""
+    parser, chosen = arguments()
+    torch.set_num_threads(chosen.threads)
+    given = {"device": chosen.device, "data": chosen.data, "clip": chosen.clip}
+    ear = None
+    if chosen.ear:
+        try:
+            ear = ear_within(load(chosen.ear))
+        except ValueError as error:
+            parser.exit(1, f"--ear {chosen.ear}: {error}\n")
+    chosen.runs.mkdir(parents=True, exist_ok=True)
+    for name in chosen.names or buildable(EVERY):
+        file = f"{name}-own.safetensors" if chosen.data else f"{name}.safetensors"
+        try:
+            made = build(name, chosen.runs / file, chosen.out / file, ear=ear, **given)
+        except (clips.ClipError, clips.NoTransformers, ValueError) as error:
+            parser.exit(1, f"{name}: {error}\n")
+        print("wrote", made)
+
+
+def arguments() -> tuple[argparse.ArgumentParser, argparse.Namespace]:
+    """What was asked for on the command line, checked before anything is trained."""
     parser = argparse.ArgumentParser(prog="python -m motiondiff_edu.recipes", description=__doc__)
     parser.add_argument(
         "names", nargs="*", help=f"which of {', '.join(ALL)}; none: all that are shipped"
@@ -79,37 +100,22 @@ def main() -> None:
         "--device", help="cpu or cuda (default: a GPU, if there is one that torch can use)"
     )
     parser.add_argument("--threads", type=int, default=torch.get_num_threads())
-    arguments = parser.parse_args()
-    unknown = set(arguments.names) - set(ALL)
+    chosen = parser.parse_args()
+    unknown = set(chosen.names) - set(ALL)
     if unknown:
         parser.error(
             f"no recipe is called {', '.join(sorted(unknown))}; there are: {', '.join(ALL)}"
         )
-    not_walkers = [name for name in arguments.names or ["all"] if name not in RECIPES]
-    if arguments.data and not_walkers:
+    not_walkers = [name for name in chosen.names or ["all"] if name not in RECIPES]
+    if chosen.data and not_walkers:
         parser.error(f"--data is for walkers ({', '.join(RECIPES)}), not {not_walkers[0]}")
-    if arguments.device:
+    if chosen.device:
         try:
-            torch.empty(0, device=arguments.device)
+            torch.empty(0, device=chosen.device)
         except (RuntimeError, AssertionError) as error:
             words = str(error).splitlines()[0]
-            parser.error(f"--device {arguments.device} cannot be used here: {words}")
-    torch.set_num_threads(arguments.threads)
-    given = {"device": arguments.device, "data": arguments.data, "clip": arguments.clip}
-    ear = None
-    if arguments.ear:
-        try:
-            ear = ear_within(load(arguments.ear))
-        except ValueError as error:
-            parser.exit(1, f"--ear {arguments.ear}: {error}\n")
-    arguments.runs.mkdir(parents=True, exist_ok=True)
-    for name in arguments.names or buildable(EVERY):
-        file = f"{name}-own.safetensors" if arguments.data else f"{name}.safetensors"
-        try:
-            made = build(name, arguments.runs / file, arguments.out / file, ear=ear, **given)
-        except (clips.ClipError, clips.NoTransformers, ValueError) as error:
-            parser.exit(1, f"{name}: {error}\n")
-        print("wrote", made)
+            parser.error(f"--device {chosen.device} cannot be used here: {words}")
+    return parser, chosen
 
 
 def buildable(names: list[str]) -> list[str]:

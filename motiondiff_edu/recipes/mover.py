@@ -177,19 +177,8 @@ def train_mover(
     or `plan_steps` do not fit the recipe; ClipError for a CLIP that is missing or has tokens of
     another width.
     """
-    if recipe.config.clip:
-        clip = clip or load_clip(recipe.config.clip)
-        check(clip, recipe.config.clip_width)
-    elif clip is not None:
-        raise ValueError(f"{recipe.name} reads words of its own: its configuration names no CLIP")
-    if recipe.plan_steps and not isinstance(recipe.config, PlannedConfig):
-        raise ValueError(f"{recipe.name} has plan_steps, and its network makes no timelines")
-    if windows is None:
-        windows = (training_texts if clip else training_clips)(recipe.clips, recipe.data_seed)
-    if any(" " in word for word in windows.words) and not clip:
-        raise ValueError(f"{recipe.name} reads words, and these windows hold whole texts")
-    if recipe.config.D == moving_frame.D:
-        windows = windows.without_timeline()
+    clip = clip_for(recipe, clip)
+    windows = windows_for(recipe, windows, clip)
     facts = {"clips": len(windows)}
     if clip:
         facts |= {"clip_sample": clip.sample()}
@@ -218,6 +207,32 @@ def train_mover(
         card["minutes"] = round(card["minutes"] + further["minutes"], 1)
         card["final_loss"] = final_loss(both, loss_fn, trained)
     return Mover(trained, schedule, windows.scaler, card, clip)
+
+
+def clip_for(recipe: MoverRecipe, clip: ClipModel | None) -> ClipModel | None:
+    """The CLIP by which a recipe reads, the given one or one found by its name; None for none."""
+    if not recipe.config.clip:
+        if clip is not None:
+            raise ValueError(
+                f"{recipe.name} reads words of its own: its configuration names no CLIP"
+            )
+        return None
+    clip = clip or load_clip(recipe.config.clip)
+    check(clip, recipe.config.clip_width)
+    return clip
+
+
+def windows_for(
+    recipe: MoverRecipe, windows: DescribedWindows | None, clip: ClipModel | None
+) -> DescribedWindows:
+    """The windows that a recipe trains on, given or made from its seed."""
+    if recipe.plan_steps and not isinstance(recipe.config, PlannedConfig):
+        raise ValueError(f"{recipe.name} has plan_steps, and its network makes no timelines")
+    if windows is None:
+        windows = (training_texts if clip else training_clips)(recipe.clips, recipe.data_seed)
+    if any(" " in word for word in windows.words) and not clip:
+        raise ValueError(f"{recipe.name} reads words, and these windows hold whole texts")
+    return windows.without_timeline() if recipe.config.D == moving_frame.D else windows
 
 
 def train_planner(

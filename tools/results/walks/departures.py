@@ -5,7 +5,8 @@ dropout and the plain loss. Each other variant adds what its words say to anothe
 has a quarter of the shipped walker's steps. Walks are sampled as `Walker.walk` does it, by DDIM in
 ten steps with held control, and measured before and after the clean-up.
 docs/results/walker-departures/plan.json has the validation loss of `base` for each rate that was
-tried, after 2,000 steps; an optimiser has the rate with the smallest one.
+tried, after 2,000 steps (Adam and Muon on other unseen clips each); an optimiser has the rate with
+the smallest one. Muon gained most of the first departures, so the next ones are added to it.
 Source: MoDiff III-D, IV-A, Alg. 1.  Notebook: 07
 """
 
@@ -71,6 +72,19 @@ VARIANTS |= {
     "no-dropout": added("no diffusion dropout", dropout=()),
     "two-noises": added("two noises for each window", noises=2),
     "footholds": added("x0 with footholds", config=FootholdConfig(**asdict(X0))),
+}
+VARIANTS |= {
+    "muon-leap": added("leap schedule", "muon", schedule="leap"),
+    "muon-x0": added("x0 instead of eps", "muon", config=X0),
+    "muon-metres": added("errors in metres", "muon", loss_weights=LossWeights(metres=2.0)),
+    "muon-near": added("near frames count more", "muon", loss_weights=LossWeights(near=1.0)),
+    "muon-bones": added("errors of bones", "muon", loss_weights=LossWeights(bones=2.0)),
+    "muon-high-noise": added(
+        "high noise counts more", "muon", loss_weights=LossWeights(high_noise=3.0)
+    ),
+    "muon-past-noise": added("past noise instead of dropout", "muon", past_noise=0.3, dropout=()),
+    "muon-no-dropout": added("no diffusion dropout", "muon", dropout=()),
+    "muon-two-noises": added("two noises for each window", "muon", noises=2),
 }
 
 
