@@ -14,7 +14,7 @@ PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.14; 
 # Python keeps what it compiled of the packages: the tests start hundreds of processes, and each would compile them again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help lab demo doctor test unit quick notebooks pages browser fuzz lint results bench pretrained student clean
+.PHONY: help lab demo doctor test imported tracker unit quick notebooks pages browser fuzz lint results bench pretrained student clean
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -67,7 +67,21 @@ demo: $(VENV)/.lab ## open one notebook ready to show: make demo NB=07
 doctor: $(VENV)/.lab ## one page: what works here, and what to do about the rest
 	@$(BIN)/python -m motiondiff_edu doctor
 
-test: lint unit notebooks browser ## set up .venv and run everything: lint, unit tests, notebooks, browser
+# Linters use one core each, and so does what the workers find ready; side by side they leave none idle.
+test: $(VENV)/.test ## set up .venv and run everything: lint, unit tests, notebooks, browser
+	@$(MAKE) --no-print-directory -j3 imported tracker lint
+	@$(MAKE) --no-print-directory unit
+	@$(MAKE) --no-print-directory notebooks
+	@$(MAKE) --no-print-directory browser
+
+# What each worker would otherwise do for itself when it starts: Python's bytecode of all that the tests import,
+imported: $(VENV)/.test
+	@$(BIN)/python -m pytest -q --collect-only -m "not browser" >/dev/null || true # what is wrong with a test, its run says
+
+# and librosa's functions, compiled (conftest.py gives each worker a copy).
+tracker: $(VENV)/.test
+	@test -d build/numba/first || { rm -rf build/numba/begun && mkdir -p build/numba/begun && \
+		NUMBA_CACHE_DIR=build/numba/begun $(BIN)/python -m motiondiff_edu.conditions.compiled && mv build/numba/begun build/numba/first; }
 
 # A worker that dies ends the run as a failure. By default pytest-xdist starts another one, and may then wait for ever.
 WORKERS := -n auto --max-worker-restart=0
