@@ -164,8 +164,8 @@ def at(table: Table, s: Steps, x: X, first: int = 0) -> Tensor:
 
     Raises IndexError for a step below `first` or beyond the table.
     """
-    s = checked_step(s, len(table) - 1, first)
-    return table.to(x.device)[s].to(x).reshape(-1, *[1] * (x.dim() - 1))
+    values = table.to(x.device)[checked_step(s, len(table) - 1, first)].to(x)
+    return values.reshape(-1, *[1] * (x.dim() - 1)) if isinstance(s, Tensor) else values
 
 
 def checked_step(s: Int[Tensor, "B"] | SupportsIndex, S: int, first: int = 0) -> Steps:

@@ -233,6 +233,9 @@ def test_posterior_is_bayes_rule_on_a_grid():
     )
     assert ours.item() == pytest.approx(mean.item(), abs=1e-6)
     assert variance.item() == pytest.approx((weight * (grid - mean) ** 2).sum().item(), abs=1e-6)
+    assert variance.shape == ()  # one number for one step, one for each sample of a batch
+    both = q_posterior(torch.zeros(2, 5, 3), torch.ones(2, 5, 3), torch.tensor([9, 4]), schedule)
+    assert both[1].shape == (2, 1, 1) and both[1][0].item() == pytest.approx(variance.item())
 
 
 def test_p_mean_with_the_true_noise_is_the_posterior_mean():
