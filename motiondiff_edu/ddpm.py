@@ -108,7 +108,7 @@ def make_schedule(beta: Float[Tensor, "S"], name: str = "schedule") -> Schedule:
         )
     schedule = Schedule(beta, 1 - beta, torch.cumprod(1 - beta, 0), name)
     if schedule.signal_left > 0.1:
-        why = "Sampling starts from pure noise, which it never reaches: use more or larger betas."
+        why = "Sampling starts from pure noise, which it never is: use more steps or larger betas."
         warnings.warn(f"{schedule_card(schedule)} {why}", stacklevel=3)
     return schedule
 
@@ -160,12 +160,10 @@ def schedule_card(schedule: Schedule) -> str:
 
 
 def at(table: Table, s: Steps, x: X, first: int = 0) -> Tensor:
-    """table[s], for one s or one for each sample of the batch, shaped so that it multiplies x.
-
-    Raises IndexError for a step below `first` or beyond the table.
-    """
-    values = table.to(x.device)[checked_step(s, len(table) - 1, first)].to(x)
-    return values.reshape(-1, *[1] * (x.dim() - 1)) if isinstance(s, Tensor) else values
+    """table[s] for one s, or one for each sample; it multiplies x. Raises as `checked_step`."""
+    s = checked_step(s, len(table) - 1, first)
+    many = isinstance(s, Tensor)
+    return table.to(x.device)[s].to(x).reshape(-1, *[1] * (x.dim() - 1)) if many else table[s].to(x)
 
 
 def checked_step(s: Int[Tensor, "B"] | SupportsIndex, S: int, first: int = 0) -> Steps:

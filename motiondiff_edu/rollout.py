@@ -213,7 +213,7 @@ def check_range(
         beyond, found = far > share * (high - low), []
         for column in beyond.any(1).any(0).nonzero().flatten().tolist():
             batch, row = beyond[..., column].nonzero()[0].tolist()
-            name = COLUMNS[column] if len(low) == len(COLUMNS) else f"column {column}"
+            name = COLUMNS[column] if column < len(COLUMNS) <= len(low) else f"column {column}"
             unit = size if name in COLUMNS[:2] else 1.0
             asks, least, most = (
                 unit * float(x) for x in (ahead[batch, row, column], low[column], high[column])

@@ -19,7 +19,7 @@ from motiondiff_edu.editing.plausible import CALMER, DRAWS
 from motiondiff_edu.motion.motion import MotionError, MotionWarning
 from motiondiff_edu.motion.skeleton import HIPS, TOES, Skeleton, joint_index
 from motiondiff_edu.performers.inbetweener import Inbetweener
-from motiondiff_edu.pretrained import checkpoints, shipped
+from motiondiff_edu.pretrained import shipped
 from motiondiff_edu.widgets import motions as shown
 from motiondiff_edu.widgets.player import Player
 
@@ -307,7 +307,7 @@ def test_the_first_of_several_samples_is_the_sample_alone(make, walked):
     ],
 )
 def test_numbers_are_checked_before_weights_are_loaded(make, told, walked, monkeypatch):
-    monkeypatch.setattr(checkpoints, "pretrained", lambda name: pytest.fail(f"{name} was loaded"))
+    monkeypatch.setattr(shipped, "_shipped", lambda kind: pytest.fail(f"{kind} was loaded"))
     with pytest.raises(ValueError, match=told):
         make(walked)
 

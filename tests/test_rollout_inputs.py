@@ -62,6 +62,17 @@ def test_a_control_beyond_the_training_is_named_by_the_frame_that_it_leads_to():
         check_range(torch.from_numpy(control).float()[None], 10, seen, size=0.5)
 
 
+def test_own_columns_leave_the_others_their_names():
+    seen = {"low": [-1.0, -1, -1, 0.5], "high": [2.0, 1, 1, 0.9]}
+    control = torch.zeros(1, 9, 4)
+    control[..., 0], control[..., 3] = 3.0, 0.7
+    with pytest.warns(UserWarning, match=r"a forward speed of 6 in .*training: -2 to 4"):
+        check_range(control, 4, seen, size=2.0)
+    control[..., 0], control[..., 3] = 1.0, 1.0
+    with pytest.warns(UserWarning, match=r"a column 3 of 1 in .*training: 0.5 to 0.9"):
+        check_range(control, 4, seen, size=2.0)
+
+
 def test_a_small_figure_is_told_of_its_own_speeds():
     motion = Motion(0.6 * walk(np.tile([1.0, 0.0, 0.0], (40, 1)), seed=5).world(), 20.0)
     walker = pretrained("walker")

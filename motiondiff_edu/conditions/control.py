@@ -1,7 +1,7 @@
 """Control for the walker: from a joystick, constant, or held (`drawn_path`: along a path).
 
 A control is (T, 3): forward m/s, left m/s, yaw rad/s (counter-clockwise from above); row t takes
-root[t] to root[t+1].
+root[t] to root[t+1]. Further columns are a condition of your own (docs/EXTENDING.md).
 Notebook: 00, 07
 """
 
@@ -80,7 +80,8 @@ def as_long(
             f"{f', {columns - 3} of your own' if columns > 3 else ''}, {FPS:g} rows a second; this "
             f"is {array.shape}. joystick([(seconds, forward, left, turning), ...]) makes one"
         )
-    bad = np.flatnonzero(~(np.abs(array) <= FASTEST).all(1))
+    possible = np.isfinite(array).all(1) & (np.abs(array[:, :3]) <= FASTEST).all(1)
+    bad = np.flatnonzero(~possible)
     if len(bad):
         raise ValueError(
             f"row {bad[0]} of the control is {array[bad[0]]}: give numbers (m/s, m/s, rad/s) from "

@@ -1,4 +1,5 @@
-"""Code that only the notebooks use.
+"""What turns the library into a course.
 
-It holds profile and seed, the checks of the exercises and their bug zoo, doctor, lab and demo.
+Profile and seed, the checks of the exercises and their bug zoo, analyses that single notebooks
+show, doctor, lab and demo.
 """

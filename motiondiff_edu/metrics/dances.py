@@ -6,7 +6,7 @@ to .25, like the best published scores. So `beat_scores` of a set of dances has 
 that with other songs' beats, the level of chance, kinematic beats per music beat (a figure that
 stops all the time meets many beats), and the speed (a figure that hardly moves stops anywhere).
 
-The functions `published_...` are the scores of the published tables as their code computes them,
+`aist_...` and `bailando_...` are the scores of the published tables as their code computes them,
 with its faults. Use them only to compare with published scores. Both count in frames and assume 60
 frames/s: at 20 frames/s the same code, with its sigma of 3 frames, gives a chance level of .68 and
 not .25. Resample first (motion.resample).

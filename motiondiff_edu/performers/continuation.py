@@ -4,11 +4,9 @@ A walker that gets a pose unlike its training begins with one that it knows: a j
 half a metre from the last given frame to the first new one. So it is in nearly all recordings. The
 clean-up blends the seam (`motion/cleanup`); where a joint would jump far, a warning says so.
 
-
-The size of a figure, and the same motion at another size.
-
-Networks know figures of one size, the course's. A child that keeps its own size would float over
-the floor in what they generate: its legs are too short for the height of the pelvis.
+Networks know figures of one size, the course's, so the motion is brought to it and back. A child
+that keeps its own size would float over the floor in what they generate: its legs are too short for
+the height of the pelvis.
 """
 
 from dataclasses import dataclass, replace

@@ -9,7 +9,7 @@ import json
 from collections.abc import Callable
 from dataclasses import MISSING, asdict, dataclass
 from difflib import get_close_matches
-from functools import cache, partial
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Generic, TypeVar
 
@@ -145,11 +145,12 @@ def load(name: str | Path, clip: ClipModel | str | Path | None = None) -> AnyPer
     with shipped weights, none of which reads by CLIP.
     Notebook: 00
     """
-    if isinstance(name, Path) or Path(name).suffix or Path(name).parent.name:
-        return _read(name, *KINDS, clip=clip)
-    if clip is not None and name in available():
+    path = Path(str(name))
+    if path.suffix or path.parent.name:
+        return _read(path, *KINDS, clip=clip)
+    if clip is not None and str(name) in available():
         raise CheckpointError(f"the shipped {name!r} does not read by CLIP: leave `clip` out")
-    return pretrained(name)
+    return pretrained(str(name))
 
 
 def load_walker(path: str | Path) -> Walker:
@@ -255,7 +256,7 @@ def pretrained(name: str = "walker") -> AnyPerformer:
     return copy.deepcopy(_kept(path, path.stat().st_mtime_ns))
 
 
-@cache
+@lru_cache(maxsize=8)
 def _kept(path: Path, changed: int) -> AnyPerformer:
     """Shipped weights are read and checked once; nobody gets this object, only copies of it."""
     return _read(path, *KINDS)

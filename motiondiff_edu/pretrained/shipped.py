@@ -5,6 +5,7 @@ Notebook: 15, 17
 
 import warnings
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -182,6 +183,7 @@ def _warn_of_glides(motion: Motion, made: list[Float[np.ndarray, "T 21 3"]]) -> 
         )
 
 
+@lru_cache(maxsize=4)  # nobody else gets them, so they need not be copied each time
 def _shipped(kind: type[P]) -> P:
     """The shipped performer of the usual name."""
     made = checkpoints.pretrained(kind.__name__.lower())

@@ -170,7 +170,7 @@ def train_dancer(
 ) -> Dancer:
     """Train by a recipe, or continue the run in `run_file`; return a dancer with averaged weights.
 
-    `device`: as in `train_recipe.on_device`.
+    `device`: as in `training.on_device`.
     `ear`: a trained one for a recipe with an ear; without it, one is trained first.
     Raises ValueError when the run in `run_file` was begun with other settings, or `ear` is not of
     the recipe's kind.

@@ -186,7 +186,7 @@ def train_inbetweener(
 ) -> Inbetweener:
     """Train by a recipe, or continue the run in `run_file`; the weights are averaged ones.
 
-    `device`: as in `train_recipe.on_device`.
+    `device`: as in `training.on_device`.
     Raises ValueError when the run in `run_file` was begun with other settings.
     """
     windows = training_windows(recipe) if windows is None else windows

@@ -167,7 +167,7 @@ def train_mover(
 ) -> Mover:
     """Train by a recipe, or continue the run in `run_file`; return a mover with averaged weights.
 
-    `device`: as in `train_recipe.on_device`.
+    `device`: as in `training.on_device`.
     With `plan_steps`, the network for timelines is then trained further (`train_planner`).
 
     A network for motions alone (`config.D` = 66) is not shown the timelines of the windows.

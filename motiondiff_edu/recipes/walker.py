@@ -1,7 +1,7 @@
 """How walkers are made: data, windows, Algorithm 1 with a recipe's departures.
 
-One record each. The numbers of `footholds` were chosen on walks; nothing else is tuned by hand. A
-killed run continues where it was saved last.
+Each shipped walker is one record. The numbers of `footholds` were chosen on walks; nothing else is
+tuned by hand. A killed run continues where it was saved last.
 
 Source: MoDiff IV-A gives Adam, batch 64, 5e-5 and 1000 epochs on a GPU: WALKER_PAPER. The others
 are ours, for one core and about an hour each. WALKER_TRUNK and `walker-eps` had four fifths of
@@ -30,7 +30,6 @@ from ..modiff import MODIFF_PAPER, MODIFF_SMALL, MoDiffConfig, training_loss
 from ..motion.augment import mirror, reverse_time
 from ..motion.clip import Clip
 from ..motion.formats.files import read_motions
-from ..motion.root_frame import FPS
 from ..performers.networks import Config, network
 from ..performers.walker import Walker
 from ..performers.windows import Windows, typical_change
@@ -203,7 +202,7 @@ def clips_of(folder: str | Path) -> list[Clip]:
 
     Warns and raises as `read_motions`.
     """
-    clips = [motion.resampled(FPS).to_clip() for motion in read_motions(folder)]
+    clips = [motion.to_clip() for motion in read_motions(folder)]
     return [version for clip in clips for version in (clip, mirror(clip))]
 
 
@@ -219,7 +218,7 @@ def train(
 
     Returns the averaged network as a walker.
     `first` is the trained network that the recipe begins with, if it names one.
-    `device`: as in `train_recipe.on_device`.
+    `device`: as in `training.on_device`.
 
     Raises ValueError when the run in `run_file` was begun with other settings, and when `first` is
     missing or not wanted.

@@ -1,6 +1,6 @@
 """A training that one watches: its loss, and what the network can do by now.
 
-    for report in watched(training.train_steps(...), steps, moving):
+    for report in watch_training(training.train_steps(...), steps, moving):
         losses.append(report.loss)
 
 Notebook: 05, 07

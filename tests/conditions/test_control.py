@@ -36,6 +36,10 @@ def test_a_control_has_the_columns_of_its_network():
         as_long(rows, None)
     with pytest.raises(ValueError, match=r"is \(rows, 4\): .*, 1 of your own, 20 rows .* \(2, 3\)"):
         as_long(rows[:, :3], None, columns=4)
+    millimetres = np.array([[1.0, 0.0, 0.0, 1200.0]])
+    assert as_long(millimetres, 2, columns=4)[1, 3] == 1200, "a unit of one's own"
+    with pytest.raises(ValueError, match="row 0 of the control"):
+        as_long(millimetres * [1, 1, 1, np.inf], None, columns=4)
 
 
 def test_joystick_reaches_each_target_smoothly():

@@ -186,6 +186,7 @@ def test_shipped_weights_have_their_files_names(saved: Path, monkeypatch: pytest
     monkeypatch.setattr(checkpoints, "FOLDER", saved.parent)
     assert available() == {"tiny": saved}
     assert pretrained("tiny").card["name"] == "tiny"
+    assert checkpoints.load(Path("tiny")).card == checkpoints.load("tiny").card
     with pytest.raises(CheckpointError, match="no weights are called 'dancer'; there are: tiny$"):
         pretrained("dancer")
 

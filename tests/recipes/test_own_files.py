@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from data_synth.walking import walk
+from motiondiff_edu.motion.formats.files import read_motions
 from motiondiff_edu.motion.motion import Motion, MotionError, MotionWarning
+from motiondiff_edu.performers.windows import Windows
 from motiondiff_edu.recipes import __main__ as command
 from motiondiff_edu.recipes.walker import WALKER_PRINTED, clips_of
 
@@ -38,6 +40,17 @@ def folder(tmp_path: Path) -> Path:
     torn.positions[7, 3] = np.nan
     torn.save(place / "torn.npz")
     return place
+
+
+def test_other_rates_are_resampled_and_what_is_too_short_is_left_out(folder):
+    fast = Motion.of_clip(walk(np.tile([1.0, 0.0, 0.0], (40, 1)), seed=4)).resampled(60)
+    fast.save(folder / "fast.npz")
+    fast[:2].save(folder / "short.npz")  # one frame at 20 frames/s
+    with pytest.warns(MotionWarning, match=r"left out: short.npz.* one frame"):
+        clips, motions = clips_of(folder), read_motions(folder)
+    assert {clip.fps for clip in clips} == {20} == {motion.fps for motion in motions}
+    assert len(clips) == 2 * len(motions) == 6
+    assert Windows.of(motions).starts.numel() == sum(len(one) - 19 for one in motions)
 
 
 def test_every_file_that_can_be_read_is_trained_on_and_mirrored(folder):

@@ -1,4 +1,4 @@
-"""`read_motion(path)`, and the file formats of this layer: BVH, npz and AIST++'s keypoints.
+"""`read_motion(path)`, `read_motions(folder)`, and formats: BVH, npz and AIST++'s keypoints.
 
 Notebook: 00
 """
@@ -82,8 +82,8 @@ def read_motion(
 def read_motions(folder: str | Path) -> list[Motion]:
     """The motions of a folder, and of the folders in it, that a network can be trained on.
 
-    They are in the order of their names. A MotionWarning names each file that `read_motion` cannot
-    read, or in which a joint is missing, and says why.
+    They have 20 frames/s, and are in the order of their names. A MotionWarning names each file that
+    cannot be read or is too short, or in which a joint is missing, and says why.
     Raises MotionError if the folder does not exist, or no file in it can be used.
     """
     folder = Path(folder)
@@ -96,6 +96,8 @@ def read_motions(folder: str | Path) -> list[Motion]:
             continue
         try:
             motion = read_motion(path)
+            motion.check_whole()
+            motion = motion.resampled(FPS)
             motion.check_whole()
             found.append(motion)
         except ValueError as error:
