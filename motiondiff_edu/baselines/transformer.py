@@ -146,9 +146,6 @@ class HearingTransformer(WithEar, DanceTransformer):
         super().__init__(config)
         self.with_ear(config.ear, config.width)
 
-    def listen(self, mel: Tensor, times: Tensor, mask: Tensor | None = None) -> Music:
-        return self.add_ear(super().listen(mel, times, mask), mel, times, mask)
-
 
 def regression_loss(
     model: DancerNetwork,

@@ -54,14 +54,15 @@ class Start:
     @classmethod
     def of(cls, motion: Motion, control: Float[np.ndarray, "n 3"], T_h: int) -> "Start":
         """From the last T_h frames of a motion at 20 frames/s on.  Raises MotionError for fewer."""
-        clip = motion.to_clip()
+        before = motion.path()
+        clip = replace(motion, root=before).to_clip()
         if len(clip) < T_h:
             raise MotionError(
                 f"{motion.name} has {len(clip)} frames; the walker needs at least {T_h} "
                 f"({T_h / FPS:g} s) to continue it"
             )
         rows = splice(clip.control, control, T_h)
-        place, heading = root_path(rows, tuple(motion.path()[-T_h]))
+        place, heading = root_path(rows, tuple(before[-T_h]))
         path = np.column_stack([place, heading])
         return cls(motion.positions, clip.poses[-T_h:], rows, path)
 

@@ -56,14 +56,15 @@ class WithEar:
         self.ear = Ear(config).requires_grad_(False)
         self.from_ear = nn.Linear(config.width, width)
 
-    def add_ear(
+    def listen(
         self,
-        music: Music,
         mel: Float[Tensor, "B M C"],
         times: Float[Tensor, "M"],
-        mask: Bool[Tensor, "B M"] | None,
+        mask: Bool[Tensor, "B M"] | None = None,
     ) -> Music:
         """The network's own tokens of a piece of music, with those of the ear added."""
+        # of the network that this class stands before
+        music: Music = super().listen(mel, times, mask)  # type: ignore[misc]
         with torch.no_grad():
             tokens = self.ear(mel, times, mask)
         return replace(music, tokens=music.tokens + self.from_ear(tokens))
@@ -75,9 +76,6 @@ class HearingMoFusion(WithEar, MoFusion):
     def __init__(self, config: HearingConfig):
         super().__init__(config)
         self.with_ear(config.ear, config.context_width)
-
-    def listen(self, mel: Tensor, times: Tensor, mask: Tensor | None = None) -> Music:
-        return self.add_ear(super().listen(mel, times, mask), mel, times, mask)
 
 
 register("dancer", HearingMoFusion, HearingConfig)

@@ -120,7 +120,7 @@ class Walker(Performer):
         new = self.pose_scaler.inverse(torch.stack([frame.pose for frame in loop], dim=1))
         drawn = new.double().cpu().numpy().reshape(count, -1, J, 3)
         both = [finish_continuation(start, one) for one in drawn]
-        if words := self._doubts(start, max(jump for _, jump in both), size):
+        if words := self._doubts(start, past, max(jump for _, jump in both), size):
             warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
         path, name = start.path[T_h:], f"{motion.name}, continued"
         made = [
@@ -128,9 +128,8 @@ class Walker(Performer):
         ]
         return made if samples > 1 else made[0]
 
-    def _doubts(self, start: Start, jump: float, size: float) -> str:
+    def _doubts(self, start: Start, past: Float[Tensor, "T_h D"], jump: float, size: float) -> str:
         """What there is to say about a continuation of a figure of this size (`in_words`)."""
-        past = torch.from_numpy(start.past).float().flatten(1)
         unlike = unlike_training(self.pose_scaler, past)
         height = size * start.given[-1, :, 1].min()
         change = change_of(start.control[len(past) - 2 :])

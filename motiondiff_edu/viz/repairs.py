@@ -17,7 +17,7 @@ from ..motion.skeleton import BONES, HIPS
 from . import body
 from .body import GREY, INK
 from .noise import histogram
-from .skeleton import SIDES, draw_pose
+from .skeleton import SIDES, draw_pose, name_row
 from .style import DASHES, LARGE, MARKERS, MEDIUM, OKABE_ITO, SMALL, figure, legend, table
 
 # ---- repairs -------------------------------------------------------------------------------------
@@ -81,16 +81,7 @@ def with_ghosts(
             axis.set_title(f"frame {t}", fontsize=SMALL)
         if i % n == 0:
             name = "each of them" if ghosts else name
-            axis.text(
-                -0.05,
-                0.5,
-                name,
-                rotation=90,
-                va="center",
-                ha="right",
-                transform=axis.transAxes,
-                fontsize=MEDIUM,
-            )
+            name_row(axis, name)
     fig.legend(handles=SIDES, loc="outside lower right", ncols=2, frameon=False, fontsize=SMALL)
     return fig
 

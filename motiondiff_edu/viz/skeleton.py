@@ -73,7 +73,7 @@ def side_by_side(
         if row == 0:
             axis.set_title(f"{t / fps:.1f} s", fontsize=SMALL)
         if i % n == 0:
-            _name_row(axis, names[row])
+            name_row(axis, names[row])
     fig.legend(handles=SIDES, loc="outside lower right", ncols=2, frameon=False, fontsize=SMALL)
     return fig
 
@@ -92,12 +92,12 @@ def noise_to_motion(
             draw_pose(axis, poses[t])
             if row == 0:
                 axis.set_title(f"pose {t + 1}", fontsize=SMALL)
-        _name_row(axes[row * n], f"s = {s}")
+        name_row(axes[row * n], f"s = {s}")
     fig.legend(handles=SIDES, loc="outside lower right", ncols=2, frameon=False, fontsize=SMALL)
     return fig
 
 
-def _name_row(axis: Axes, name: str) -> None:
+def name_row(axis: Axes, name: str) -> None:
     """Write the name vertically, to the left of the first axis of a row."""
     axis.text(
         -0.05,
