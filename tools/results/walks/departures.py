@@ -62,30 +62,23 @@ VARIANTS: dict[str, Variant] = {"base": Variant("MoDiff: eps with the skip, Adam
 VARIANTS |= {
     "leap": added("leap schedule", schedule="leap"),
     "muon": added("Muon", optimizer="muon"),
-    "x0": added("x0 instead of eps", config=X0),
-    "v": added("v instead of eps", config=replace(X0, target="v")),
-    "metres": added("errors in metres", loss_weights=LossWeights(metres=2.0)),
-    "near": added("near frames count more", loss_weights=LossWeights(near=1.0)),
-    "bones": added("errors of bones", loss_weights=LossWeights(bones=2.0)),
-    "high-noise": added("high noise counts more", loss_weights=LossWeights(high_noise=3.0)),
-    "past-noise": added("past noise instead of dropout", past_noise=0.3, dropout=()),
-    "no-dropout": added("no diffusion dropout", dropout=()),
-    "two-noises": added("two noises for each window", noises=2),
-    "footholds": added("x0 with footholds", config=FootholdConfig(**asdict(X0))),
 }
 VARIANTS |= {
-    "muon-leap": added("leap schedule", "muon", schedule="leap"),
-    "muon-x0": added("x0 instead of eps", "muon", config=X0),
     "muon-metres": added("errors in metres", "muon", loss_weights=LossWeights(metres=2.0)),
-    "muon-near": added("near frames count more", "muon", loss_weights=LossWeights(near=1.0)),
-    "muon-bones": added("errors of bones", "muon", loss_weights=LossWeights(bones=2.0)),
-    "muon-high-noise": added(
-        "high noise counts more", "muon", loss_weights=LossWeights(high_noise=3.0)
-    ),
-    "muon-past-noise": added("past noise instead of dropout", "muon", past_noise=0.3, dropout=()),
-    "muon-no-dropout": added("no diffusion dropout", "muon", dropout=()),
-    "muon-two-noises": added("two noises for each window", "muon", noises=2),
+    "muon-leap": added("leap schedule", "muon", schedule="leap"),
 }
+VARIANTS |= {
+    "near": added("near frames count more", "muon-leap", loss_weights=LossWeights(near=1.0)),
+    "bones": added("errors of bones", "muon-leap", loss_weights=LossWeights(bones=2.0)),
+    "high-noise": added("high noise counts more", "muon-leap",
+                        loss_weights=LossWeights(high_noise=3.0)),
+    "past-noise": added("past noise instead of dropout", "muon-leap", past_noise=0.3, dropout=()),
+    "no-dropout": added("no diffusion dropout", "muon-leap", dropout=()),
+    "two-noises": added("two noises for each window", "muon-leap", noises=2),
+    "x0": added("x0 instead of eps", "muon-leap", config=X0),
+    "v": added("v instead of eps", "muon-leap", config=replace(X0, target="v")),
+    "footholds": added("x0 with footholds", "muon-leap", config=FootholdConfig(**asdict(X0))),
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
