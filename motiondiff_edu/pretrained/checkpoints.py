@@ -165,7 +165,10 @@ def load_dancer(path: str | Path) -> Dancer:
 
 
 def _read(path: str | Path, *kinds: Kind[P], clip: ClipModel | str | Path | None = None) -> P:
-    return read_weights(path, {kind.format: partial(_assembled, kind, clip=clip) for kind in kinds})
+    shipped = Path(path).parent == FOLDER
+    assembled = {kind.format: partial(_assembled, kind, clip=clip, shipped=shipped)
+                 for kind in kinds}  # fmt: skip
+    return read_weights(path, assembled)
 
 
 def _assembled(
@@ -173,6 +176,7 @@ def _assembled(
     tensors: dict[str, Tensor],
     metadata: dict[str, str],
     clip: ClipModel | str | Path | None = None,
+    shipped: bool = False,
 ) -> P:
     networks = networks_of(kind.name)
     config = config_of(metadata, {name: one.config for name, one in networks.items()}, kind.usual)
@@ -182,7 +186,8 @@ def _assembled(
     scalers = [scaler_of(tensors, name) for name in kind.scalers]
     build = partial(networks[metadata.get("network", kind.usual)].build, config, *scalers)
     weights = weights_of(tensors)
-    refuse_other_shapes(build, weights)
+    if not shipped:  # torch takes a second to import what an outline needs
+        refuse_other_shapes(build, weights)
     schedule = make_schedule(tensors["schedule.beta"], metadata["schedule"])
     perform: Callable[..., P] = kind.performer  # each takes its own scalers
     trained = (with_weights(build(), weights), schedule, *scalers, card_of(metadata))
