@@ -16,12 +16,12 @@ from timing import in_turn
 
 from data_synth.walking import dataset
 from motiondiff_edu.motion.clip import Clip
-from motiondiff_edu.recipes.walker import WALKER_TRUNK, Recipe, prepared
+from motiondiff_edu.recipes.walker import WALKER_TRUNK, WalkerRecipe, prepared
 
 COMMAND = "python -m benchmarks encoding"
 
 
-def step(recipe: Recipe, clips: list[Clip]) -> Callable[[], None]:
+def step(recipe: WalkerRecipe, clips: list[Clip]) -> Callable[[], None]:
     """A function that computes the recipe's loss on a new batch, and its gradients."""
     begun = prepared(recipe, clips)
     generator = torch.Generator().manual_seed(0)

@@ -9,6 +9,8 @@ those short trainings it gains nothing.
 Source: Hoogeboom and others, 2023 (simple diffusion), for images; for dances, ours.  Notebook: 12
 """
 
+from collections.abc import Callable
+
 import torch
 
 from ..ddpm import Schedule, linear_schedule, make_schedule
@@ -48,4 +50,5 @@ def leap_schedule(
     )
 
 
-SCHEDULES = {"linear": linear_schedule, "leap": leap_schedule}  # by their names in recipes
+# by their names in recipes
+SCHEDULES: dict[str, Callable[[int], Schedule]] = {"linear": linear_schedule, "leap": leap_schedule}

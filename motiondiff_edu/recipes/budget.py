@@ -9,7 +9,7 @@ from ..motion.clip import Clip
 from ..performers.walker import Walker
 from ..training import TrainState, train_steps
 from .muon import optimizer_for
-from .walker import WALKER_TRUNK, Recipe, prepared
+from .walker import WALKER_TRUNK, WalkerRecipe, prepared
 
 WARM_UP = 100  # steps
 BUDGET = replace(WALKER_TRUNK, name="budget", batch=32, lr=3e-3, decay=0.99)
@@ -18,7 +18,7 @@ BUDGET = replace(WALKER_TRUNK, name="budget", batch=32, lr=3e-3, decay=0.99)
 def train_for(
     seconds: float,
     clips: list[Clip],
-    recipe: Recipe = BUDGET,
+    recipe: WalkerRecipe = BUDGET,
     clock: Callable[[], float] = time.process_time,
 ) -> tuple[Walker, int]:
     """Train a walker until the CPU-seconds of the loop are spent; return it with its steps.

@@ -8,10 +8,11 @@ Notebook: 13
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
-from torch import Tensor, nn
+from torch import Tensor
 
 from .._files import digest_of_tensors
 from ..baselines.transformer import HearingTransformerConfig, regression_loss
@@ -31,36 +32,29 @@ from ..training import LossFn
 from .ear import EAR, EarRecipe, TrainedEar, ear_of
 from .mofusion_loss import KINEMATIC, OURS, DanceLossWeights, batch_loss, weighted_loss
 from .songs import songs_as_mel
-from .training import Provenance, on_device, train_recipe
+from .training import Provenance, Recipe, on_device, train_recipe
 
 
 # ---- recipes -------------------------------------------------------------------------------------
 @dataclass(frozen=True)
-class DanceRecipe:
+class DanceRecipe(Recipe):
     """One training run of a dancer; by default with the paper's loss.
 
     The data are `songs` songs of `seconds` each with `dances` dances each; every dance is also
     mirrored.
     """
 
-    name: str
     config: Config  # of a network for dancers (`performers.networks`)
-    steps: int
     kinematic: KinematicWeights | None = None
     loss_weights: DanceLossWeights = DanceLossWeights()
     gain_noise: float = 0.0  # `beyond.gain_noise`
     snr: float = 1.0  # factor on the signal-to-noise ratio of the cosine schedule
     frames: int = 100  # per window
-    lr: float = 3e-3
-    optimizer: str = "muon"
     batch: int = 32
-    decay: float = 0.999
     songs: int = 1500
     seconds: float = 20.0
     dances: int = 2  # per song
     motions: int = 0  # if not 0: so many walks and dances without music, instead of songs
-    data_seed: int = 1
-    seed: int = 0
 
 
 @dataclass(frozen=True)
@@ -75,6 +69,7 @@ class SongRecipe(DanceRecipe):
     ear: EarRecipe | None = EAR
 
     def __post_init__(self):
+        super().__post_init__()
         if self.no_music and getattr(self.config, "deterministic", False):
             raise ValueError("no_music: a regression cannot be guided, so it always has its music")
         own = getattr(self.config, "ear", None)
@@ -185,14 +180,15 @@ def train_dancer(
     torch.manual_seed(recipe.seed)
     model = network(recipe.config)
     about = {"network": type(model).__name__, "data": digest(windows)}
-    facts = {"windows": len(windows)} | bones_of(windows)
+    facts: dict[str, Any] = {"windows": len(windows)} | bones_of(windows)
     if getattr(recipe.config, "ear", None):
-        if not (ear or getattr(recipe, "ear", None)):
-            raise ValueError(f"{recipe.name} needs an ear: pass `ear`, or use a SongRecipe")
-        trained_ear = ear or ear_of(recipe.ear, run_file.parent, log, device)
-        model.ear.load_state_dict(trained_ear.hearing(windows.mel_scaler).state_dict())
-        about["ear"] = digest_of_tensors(trained_ear.ear.state_dict())[:16]
-        facts["ear"] = trained_ear.card
+        if ear is None:
+            if not (own := getattr(recipe, "ear", None)):
+                raise ValueError(f"{recipe.name} needs an ear: pass `ear`, or use a SongRecipe")
+            ear = ear_of(own, run_file.parent, log, device)
+        model.ear.load_state_dict(ear.hearing(windows.mel_scaler).state_dict())
+        about["ear"] = digest_of_tensors(ear.ear.state_dict())[:16]
+        facts["ear"] = ear.card
     trained, card = train_recipe(
         recipe,
         run_file,
@@ -227,11 +223,11 @@ def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> L
     loss = weighted_loss(recipe.loss_weights, schedule, scaler, dance_frame.moves, moved)
     of_batch = batch_loss(recipe.kinematic, loss, schedule, scaler, dance_frame.body_of)
 
-    def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
+    def loss_fn(model: Any, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
         x0, mel, planted = (part.to(device) for part in drawn(recipe, windows, generator))
         music = model.listen(mel, windows.mel_times.to(device)) if model.config.C else None
-        if share := getattr(recipe, "no_music", 0):
+        if music is not None and (share := getattr(recipe, "no_music", 0)):
             left_out = torch.rand(len(mel), generator=generator) < share
             music = without(music, left_out.to(device))
         return of_batch(model, x0, music, planted, generator)
@@ -250,7 +246,7 @@ def drawn(recipe: DanceRecipe, windows: DanceWindows, generator: torch.Generator
 def regression_loss_of(recipe: DanceRecipe, windows: DanceWindows) -> LossFn:
     """The loss of a regression, which gets neither noise nor a step."""
 
-    def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
+    def loss_fn(model: Any, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
         x0, mel, _ = drawn(recipe, windows, generator)
         times = windows.mel_times.to(device)

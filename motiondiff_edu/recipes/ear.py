@@ -4,11 +4,13 @@ Ours; see `beyond.hearing`.
 """
 
 from dataclasses import dataclass
+from functools import reduce
 from pathlib import Path
+from typing import Any
 
 import torch
 from jaxtyping import Float
-from torch import Tensor, nn
+from torch import Tensor
 from torch.nn import functional as F
 
 from .._files import digest_of_tensors, digest_of_texts
@@ -22,16 +24,15 @@ from ..beyond.hearing import (
 )
 from ..conditions.music import frame_times
 from ..motion.scaler import Scaler
-from ..performers.dancer import Dancer
 from ..performers.ear import Ear, EarConfig, EarOutput, rescale_ear
 from ..performers.hearing_mofusion import WithEar
 from ..training import LossFn
 from .songs import HeardSongs, songs_as_mel
-from .training import Provenance, on_device, train_recipe
+from .training import Provenance, Recipe, on_device, train_recipe
 
 
 @dataclass(frozen=True)
-class EarRecipe:
+class EarRecipe(Recipe):
     """One training run of an ear, on `songs` songs of `seconds` each."""
 
     name: str = "ear"
@@ -40,13 +41,9 @@ class EarRecipe:
     frames: tuple[int, ...] = (128, 160, 224)  # Mel frames of a piece; one of these for each batch
     gain_noise: float = 0.3  # `beyond.gain_noise`
     lr: float = 2e-3
-    optimizer: str = "muon"
     batch: int = 32
-    decay: float = 0.999
     songs: int = 1500
     seconds: float = 20.0
-    data_seed: int = 1
-    seed: int = 0
 
 
 EAR = EarRecipe()
@@ -102,13 +99,13 @@ def hearing_loss(
 def loss_of_ear(recipe: EarRecipe, songs: HeardSongs) -> LossFn:
     """The weighted loss of a batch."""
 
-    def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
+    def loss_fn(model: Any, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
         mel, counts, genres = (x.to(device) for x in drawn_batch(recipe, songs, generator))
         times = frame_times(mel.shape[1]).float().to(device)
         said = model.read(model(mel, times))
         parts = hearing_loss(said, counts[:, :: model.stride], genres)
-        return sum(WEIGHTS[name] * part for name, part in parts.items())
+        return reduce(torch.add, (WEIGHTS[name] * part for name, part in parts.items()))
 
     return loss_fn
 
@@ -126,10 +123,10 @@ class TrainedEar:
         return rescale_ear(self.ear, self.scaler, scaler)
 
 
-def ear_within(dancer: Dancer) -> TrainedEar:
+def ear_within(dancer: Any) -> TrainedEar:
     """The ear of a trained dancer, for other dancers: an ear takes longer to train than a dancer.
 
-    Raises ValueError for a dancer that has no ear.
+    Raises ValueError for a dancer without an ear, and another performer.
     """
     if not isinstance(dancer.model, WithEar):
         raise ValueError(f"{type(dancer.model).__name__} has no ear that another dancer could use")

@@ -12,11 +12,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
 from jaxtyping import Bool, Float
-from torch import Tensor, nn
+from torch import Tensor
 
 from ..beyond.around_lines import GivenLines
 from ..beyond.loss_terms import as_x0_errors, weighted, weighted_by_step
@@ -37,27 +38,20 @@ from .drawn_masks import drawn_masks, uniform
 from .mofusion_loss import KINEMATIC, DanceLossWeights, batch_loss, weighted_loss
 from .mofusion_loss import OURS as LOSS_WEIGHTS
 from .recordings import CREDIT, Recorded, training_recordings
-from .training import Provenance, on_device, train_recipe
+from .training import Provenance, Recipe, on_device, train_recipe
 
 
 @dataclass(frozen=True)
-class InbetweenerRecipe:
+class InbetweenerRecipe(Recipe):
     """One training run of an in-betweener."""
 
-    name: str
     config: KeyframeConfig
-    steps: int
     kinematic: KinematicWeights | None = None
     loss_weights: DanceLossWeights = DanceLossWeights()
     snr: float = 1.0  # factor on the signal-to-noise ratio of the cosine schedule
     frames: int = 100  # per window
-    lr: float = 3e-3
-    optimizer: str = "muon"
     batch: int = 32
-    decay: float = 0.999
     seconds: float = 20.0  # of each walk and dance
-    data_seed: int = 1
-    seed: int = 0
     motions: int = 0  # so many walks and dances without music
     acts: int = 0  # so many performed sentences beside the walks and dances
     recordings: int = 0  # so many versions of each training recording, some of them unvaried
@@ -219,7 +213,7 @@ def loss_of(recipe: InbetweenerRecipe, windows: DanceWindows, schedule: Schedule
     if recipe.config.target == "v":
         data_loss = weighted_by_step(data_loss, as_x0_errors(schedule))
 
-    def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
+    def loss_fn(model: Any, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
         motion, _, planted = windows.draw(recipe.batch, generator)
         known = drawn_masks(len(motion), windows.n, generator)

@@ -5,10 +5,11 @@ They see the captions and clips of the training split alone, as the movers do.
 
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import torch
 from jaxtyping import Float
-from torch import Tensor, nn
+from torch import Tensor
 
 from ..conditions.word_encoder import FIRST
 from ..metrics.distributions import Space, contrast
@@ -17,7 +18,7 @@ from ..performers.described_windows import Chosen
 from ..pretrained.judges import Judge
 from ..training import LossFn
 from .mover import DescribedData, Truths, described, digest
-from .training import Provenance, on_device, train_recipe
+from .training import Provenance, Recipe, on_device, train_recipe
 
 SEEDS = (0, 1, 2)
 
@@ -31,19 +32,15 @@ class SpaceConfig:
 
 
 @dataclass(frozen=True)
-class JudgeRecipe:
+class JudgeRecipe(Recipe):
     """One training run of a judge."""
 
-    name: str
     config: SpaceConfig = SpaceConfig()
     steps: int = 3000
     frames: int = 14_000  # of a batch, all motions together
     lr: float = 1e-3
     optimizer: str = "adam"
-    decay: float = 0.999
     clips: int = 12_000
-    data_seed: int = 1
-    seed: int = 0
 
 
 JUDGES = {f"judge-{seed}": JudgeRecipe(f"judge-{seed}", seed=seed) for seed in SEEDS}
@@ -79,7 +76,7 @@ def shown_to_judges(clips: int, seed: int) -> DescribedData:
 def loss_of(recipe: JudgeRecipe, data: DescribedData) -> LossFn:
     """The loss by contrast over random batches; texts that say the same are not set apart."""
 
-    def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
+    def loss_fn(model: Any, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
         chosen = data.windows.choose(recipe.frames, generator)
         x, ids, _ = data.windows.take(chosen)

@@ -60,6 +60,7 @@ def batch_loss(
         body = body_of(scaler.to(x0.device))
 
         def kinematic(x0_hat: Tensor, x0: Tensor) -> Tensor:
+            assert weights
             return weights.total(kinematic_parts(x0_hat, x0, body, planted))
 
         return training_loss(

@@ -9,11 +9,12 @@ from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
 from jaxtyping import Float, Int
-from torch import Tensor, nn
+from torch import Tensor
 
 from .._files import digest_of_tensors, digest_of_texts
 from ..beyond import loss_terms
@@ -35,21 +36,19 @@ from ..performers.planned_mofusion import Performing, PlannedConfig, PlannedMoFu
 from ..performers.text_mofusion import TextMoFusionConfig, Texts
 from ..training import LossFn
 from .mofusion_loss import KINEMATIC, OURS, DanceLossWeights, batch_loss, weighted_loss
-from .training import Provenance, final_loss, on_device, train_recipe
+from .training import Provenance, Recipe, final_loss, on_device, train_recipe
 
 
 # ---- recipes -------------------------------------------------------------------------------------
 @dataclass(frozen=True)
-class MoverRecipe:
+class MoverRecipe(Recipe):
     """One training run of a mover; by default with the paper's loss.
 
     The data are `clips` described clips of `data_synth.actions`; every clip is also mirrored, with
     its words. The words of the configuration are those of the captions, unless it names a CLIP.
     """
 
-    name: str
     config: TextMoFusionConfig
-    steps: int
     plan_steps: int = 0  # afterwards, of the network for timelines alone, which needs more of them
     kinematic: KinematicWeights | None = None
     loss_weights: DanceLossWeights = DanceLossWeights()
@@ -58,11 +57,7 @@ class MoverRecipe:
     frames: int = 3072  # of a batch, all motions together
     no_text: float = 0.0  # share of the texts left out: `beyond.classifier_free`
     lr: float = 2e-3
-    optimizer: str = "muon"
-    decay: float = 0.999
     clips: int = 12_000
-    data_seed: int = 1
-    seed: int = 0
 
 
 MOVER_PLAIN = MoverRecipe(
@@ -179,7 +174,7 @@ def train_mover(
     """
     clip = clip_for(recipe, clip)
     windows = windows_for(recipe, windows, clip)
-    facts = {"clips": len(windows)}
+    facts: dict[str, Any] = {"clips": len(windows)}
     if clip:
         facts |= {"clip_sample": clip.sample()}
         log(f"{recipe.name}: CLIP reads {len(windows.words)} captions")
@@ -196,9 +191,8 @@ def train_mover(
     texts_of = texts_by(clip, windows) if clip else texts_as_ids
     loss_fn = loss_of(recipe, windows, schedule, texts_of)
     both = replace(recipe, plan_steps=0)
-    how = {"warmup": WARMUP, "log": log}
     model = on_device(model, device)
-    trained, card = train_recipe(both, run_file, model, loss_fn, provenance, **how)
+    trained, card = train_recipe(both, run_file, model, loss_fn, provenance, warmup=WARMUP, log=log)
     if recipe.plan_steps:
         plan_loss = plan_loss_of(recipe, windows, schedule, texts_of)
         further = train_planner(recipe, run_file, trained, plan_loss, provenance, log, device)
@@ -252,15 +246,15 @@ def train_planner(
     alone = replace(
         recipe,
         name=f"{recipe.name}-planner",
-        config=recipe.config.of_the_plan(),
+        config=model.planner.config,
         steps=recipe.plan_steps,
     )
     begins = {"begins_with": digest_of_tensors(model.planner.state_dict())[:16]}
     own = replace(provenance, about=provenance.about | begins)
     file = run_file.with_name(f"{run_file.stem}-planner{run_file.suffix}")
     planner = copy.deepcopy(model.planner).requires_grad_(True)
-    how = {"warmup": WARMUP, "log": log}
-    trained, card = train_recipe(alone, file, on_device(planner, device), loss_fn, own, **how)
+    planner = on_device(planner, device)
+    trained, card = train_recipe(alone, file, planner, loss_fn, own, warmup=WARMUP, log=log)
     model.planner.load_state_dict(trained.state_dict())
     return {name: card[name] for name in ("minutes", "sittings", "final_loss")} | begins
 
@@ -298,7 +292,7 @@ def loss_of(
     batch = batches(recipe, windows, texts_of)
     of_batch = batch_loss(recipe.kinematic, loss, schedule, scaler, moving_frame.body_of)
 
-    def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
+    def loss_fn(model: Any, generator: torch.Generator) -> Tensor:
         x0, plan, texts, planted = batch(next(model.parameters()).device, generator)
         contexts = model.listen(texts)
         if not isinstance(model, PlannedMoFusion):
@@ -318,7 +312,7 @@ def plan_loss_of(
     """The loss of the network for timelines alone: eq. 4 without kinematics."""
     batch = batches(recipe, windows, texts_of)
 
-    def loss_fn(planner: nn.Module, generator: torch.Generator) -> Tensor:
+    def loss_fn(planner: Any, generator: torch.Generator) -> Tensor:
         _, plan, texts, _ = batch(next(planner.parameters()).device, generator)
         return training_loss(planner, (plan, planner.listen(texts)), schedule, generator)
 
@@ -335,7 +329,7 @@ def batches(
     ) -> tuple[Tensor, Tensor, Texts, Tensor]:
         x0, ids, planted = windows.draw(recipe.frames, generator)
         ids = without_some(ids, recipe.no_text, generator)
-        x0, texts, planted = (part.to(device) for part in (x0, texts_of(ids), planted))
+        x0, planted, texts = x0.to(device), planted.to(device), texts_of(ids).to(device)
         return x0[..., : moving_frame.D], x0[..., moving_frame.D :], texts, planted
 
     return batch

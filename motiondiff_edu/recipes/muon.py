@@ -20,8 +20,6 @@ def optimizer_for(model: nn.Module, name: str):
 
     It is None for "adam", which is the default there.
     """
-    if name not in ("muon", "adam"):
-        raise ValueError(f'optimizer must be "muon" or "adam", not {name!r}')
     return MuonAndAdam(model) if name == "muon" else None
 
 
@@ -36,13 +34,13 @@ class Muon(torch.optim.Optimizer):
         super().__init__(params, {"lr": lr, "momentum": momentum})
 
     @torch.no_grad()
-    def step(self) -> None:
+    def step(self) -> None:  # type: ignore[override]  # no closure
         """One step against the gradients; parameters without a gradient do not change.
 
         Matrices of one shape are whitened together, which takes fewer launches on a GPU.
         """
         for group in self.param_groups:
-            alike: dict[torch.Size, list[nn.Parameter]] = {}
+            alike: dict[torch.Size, list[Tensor]] = {}
             for matrix in (p for p in group["params"] if p.grad is not None):
                 alike.setdefault(matrix.shape, []).append(matrix)
             for shape, matrices in alike.items():
@@ -50,7 +48,7 @@ class Muon(torch.optim.Optimizer):
                     if not self.state[p]:
                         self.state[p]["momentum_buffer"] = torch.zeros_like(p)
                 means = [self.state[p]["momentum_buffer"] for p in matrices]
-                gradients = [p.grad for p in matrices]
+                gradients = [p.grad for p in matrices if p.grad is not None]
                 torch._foreach_lerp_(means, gradients, 1 - group["momentum"])
                 ahead = torch.stack(gradients).lerp(torch.stack(means), group["momentum"])
                 step = whitened(ahead).unbind()  # of Nesterov's momentum

@@ -12,7 +12,7 @@ import subprocess
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Protocol, runtime_checkable
+from typing import Any
 
 import numpy as np
 import torch
@@ -28,17 +28,28 @@ from .muon import optimizer_for
 LOG_EVERY, SAVE_EVERY = 30.0, 300.0  # seconds of training
 
 
-@runtime_checkable
-class AnyRecipe(Protocol):
-    """What every recipe says of its training: a frozen dataclass with the network's `config`."""
+OPTIMIZERS = ("muon", "adam")
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """What every recipe says: the network's sizes, and the steps, rate and seeds of its training.
+
+    Raises ValueError for an unknown optimizer.
+    """
 
     name: str
-    config: object
+    config: Any  # of the network
     steps: int
-    lr: float
-    optimizer: str
-    decay: float
-    seed: int
+    lr: float = 3e-3
+    optimizer: str = "muon"  # or "adam"
+    decay: float = 0.999  # of the averaged weights
+    data_seed: int = 1
+    seed: int = 0
+
+    def __post_init__(self):
+        if self.optimizer not in OPTIMIZERS:
+            raise ValueError(f"optimizer must be {' or '.join(OPTIMIZERS)}, not {self.optimizer!r}")
 
 
 @dataclass(frozen=True)
@@ -51,7 +62,7 @@ class Provenance:
 
 
 def train_recipe(
-    recipe: AnyRecipe,
+    recipe: Recipe,
     run_file: Path,
     model: nn.Module,
     loss_fn: LossFn,
@@ -60,7 +71,7 @@ def train_recipe(
     warmup: int,
     log: Callable[[str], object],
     before: Callable[[int], object] | None = None,
-) -> tuple[nn.Module, dict]:
+) -> tuple[Any, dict]:
     """Train (or continue) a fresh network; `run_file` holds the run.
 
     It is trained where it is (`on_device`). Returns the averaged network, on the CPU, and its card.
@@ -104,7 +115,7 @@ def on_device(model: nn.Module, device: str | None) -> nn.Module:
 
 
 def run_to_end(
-    recipe: AnyRecipe,
+    recipe: Recipe,
     rate,
     state: TrainState,
     loss_fn: LossFn,
@@ -123,7 +134,7 @@ def run_to_end(
             losses, logged = [], state.seconds
 
 
-def final_loss(recipe: AnyRecipe, loss_fn: LossFn, network: nn.Module) -> float:
+def final_loss(recipe: Recipe, loss_fn: LossFn, network: nn.Module) -> float:
     """The mean loss over 50 batches, or over as many as a shorter training had."""
     return round(mean_loss(loss_fn, network, min(50, recipe.steps)), 6)
 
@@ -189,13 +200,8 @@ def save_run(
     }
     if torch.cuda.is_available():
         tensors["random.cuda"] = torch.cuda.get_rng_state()
-    counts = {
-        "step": state.step,
-        "seconds": state.seconds,
-        "about": about,
-        "optimizer": _kind(state),
-    }
-    counts["notes"] = notes or []
+    counts: dict[str, Any] = {"step": state.step, "seconds": state.seconds, "about": about}
+    counts |= {"optimizer": _kind(state), "notes": notes or []}
     tensors = {k: v.detach().cpu().contiguous().clone() for k, v in tensors.items()}
     counts = {name: json.dumps(value) for name, value in counts.items()} | {
         "sha256": digest_of_tensors(tensors)

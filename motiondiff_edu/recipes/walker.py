@@ -11,10 +11,11 @@ their steps in bfloat16; the card of `walker-eps` says so.
 import hashlib
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
-from torch import Tensor, nn
+from torch import Tensor
 
 from .._files import digest_of_tensors
 from ..beyond import loss_terms
@@ -30,11 +31,11 @@ from ..modiff import MODIFF_PAPER, MODIFF_SMALL, MoDiffConfig, training_loss
 from ..motion.augment import mirror, reverse_time
 from ..motion.clip import Clip
 from ..motion.formats.files import read_motions
-from ..performers.networks import Config, network
+from ..performers.networks import WalkerConfig, network
 from ..performers.walker import Walker
 from ..performers.windows import Windows, typical_change
 from ..training import LossFn
-from .training import Provenance, on_device, train_recipe
+from .training import Provenance, Recipe, on_device, train_recipe
 
 
 # ---- recipes -------------------------------------------------------------------------------------
@@ -53,7 +54,7 @@ class LossWeights:
 
 
 @dataclass(frozen=True)
-class Recipe:
+class WalkerRecipe(Recipe):
     """One training run of a walker.
 
     The defaults of optimizer and loss are the paper's, without its diffusion dropout. The paper
@@ -63,12 +64,10 @@ class Recipe:
     are reversed in time.
     """
 
-    name: str
-    config: Config  # of a network for walkers (`performers.networks`)
-    steps: int
-    schedule: str = "linear"  # or "leap": `beyond.schedules`
+    config: WalkerConfig  # of a network for walkers (`performers.networks`)
     lr: float = 2e-3
-    optimizer: str = "adam"  # or "muon": `recipes.muon`
+    optimizer: str = "adam"
+    schedule: str = "linear"  # or "leap": `beyond.schedules`
     batch: int = 64  # windows a step
     noises: int = 1  # diffusion steps drawn for each window: `beyond.shared_encoding`
     held_control: float = 0.5  # share of the windows: `beyond.held_control`
@@ -79,21 +78,16 @@ class Recipe:
     dropout_start: float = START  # share of the training before the first of them
     noised_past_weight: float = 1.0  # of windows with a noised past: `beyond.noised_past_weight`
     begins_with: str = ""  # the recipe whose network this training continues; none: a fresh one
-    decay: float = 0.999
     clips: int = 720
     seconds: float = 20.0
     reversed_share: float = 0.25  # of the clips also played backwards
-    data_seed: int = 1
-    seed: int = 0
     styles: tuple[str, ...] | None = None  # of walking; None: all
 
     def __post_init__(self):
         """Raises ValueError for batch or noises under 1, and an unknown schedule or optimizer."""
-        for name, there in (("schedule", ("linear", "leap")), ("optimizer", ("adam", "muon"))):
-            if getattr(self, name) not in there:
-                raise ValueError(
-                    f"{name} must be {' or '.join(there)}, not {getattr(self, name)!r}"
-                )
+        super().__post_init__()
+        if self.schedule not in SCHEDULES:
+            raise ValueError(f"schedule must be {' or '.join(SCHEDULES)}, not {self.schedule!r}")
         if min(self.batch, self.noises) < 1:
             raise ValueError(
                 f"a batch needs a window and a noise at least, not batch = {self.batch}, "
@@ -106,7 +100,7 @@ OURS = LossWeights(metres=2.0, near=1.0, bones=2.0)
 # The paper's rate of diffusion dropout is 0 at first. So `walker` and `walker-plain` have the first
 # part of their training in common, WALKER_TRUNK, and each continues it: with the paper's rates, and
 # without. The learning rate falls to 0 in both parts.
-WALKER_TRUNK = Recipe(
+WALKER_TRUNK = WalkerRecipe(
     "walker-trunk",
     SMALL_FEET,
     steps=20_000,
@@ -136,7 +130,7 @@ WALKER_EPS = replace(
 # The paper's recipe as it stands, at our small size: eps without a skip, Adam at 5e-5, batch 64,
 # the plain loss, diffusion dropout, control never held. Ours: the data, the warm-up and cosine of
 # the rate, and what the paper does not give: the linear schedule is TimeGrad's.
-WALKER_PRINTED = Recipe(
+WALKER_PRINTED = WalkerRecipe(
     "walker-printed",
     replace(MODIFF_SMALL, skip=False),
     steps=12_000,
@@ -184,7 +178,7 @@ RECIPES = {recipe.name: recipe for recipe in (*SHIPPED, WALKER_TRUNK, WALKER_PAP
 
 
 # ---- training ------------------------------------------------------------------------------------
-def training_clips(recipe: Recipe) -> list[Clip]:
+def training_clips(recipe: WalkerRecipe) -> list[Clip]:
     """The recipe's data, made from its seed.
 
     Each clip also appears mirrored, and a share of both reversed in time.
@@ -207,11 +201,11 @@ def clips_of(folder: str | Path) -> list[Clip]:
 
 
 def train(
-    recipe: Recipe,
+    recipe: WalkerRecipe,
     run_file: Path,
     clips: list[Clip] | None = None,
     log=print,
-    first: nn.Module | None = None,
+    first: Any = None,
     device: str | None = None,
 ) -> Walker:
     """Train (or continue) a recipe; `run_file` holds the run.
@@ -256,17 +250,17 @@ class Prepared:
 
     windows: Windows
     schedule: Schedule
-    model: nn.Module
+    model: Any
     loss_fn: LossFn
     dropout: Dropout | None
 
-    def walker(self, trained: nn.Module, card: dict | None = None) -> Walker:
+    def walker(self, trained: Any, card: dict | None = None) -> Walker:
         """The walker of a trained network, in the units of these data."""
         scalers = self.windows.pose_scaler, self.windows.control_scaler
         return Walker(trained, self.schedule, *scalers, card or {})
 
 
-def prepared(recipe: Recipe, clips: list[Clip]) -> Prepared:
+def prepared(recipe: WalkerRecipe, clips: list[Clip]) -> Prepared:
     """What a recipe trains on these clips; the network's first weights follow from its seed."""
     config = recipe.config
     windows = Windows.of(clips, config.T_h, config.T_p)
@@ -278,7 +272,7 @@ def prepared(recipe: Recipe, clips: list[Clip]) -> Prepared:
 
 
 def loss_of(
-    recipe: Recipe, windows: Windows, schedule: Schedule, dropout: Dropout | None = None
+    recipe: WalkerRecipe, windows: Windows, schedule: Schedule, dropout: Dropout | None = None
 ) -> LossFn:
     """The recipe's loss: its data, `modiff.training_loss`, and the departures that it names.
 
@@ -288,7 +282,7 @@ def loss_of(
     loss, change = weighted_loss(recipe.loss_weights, windows, schedule), typical_change(windows)
     footholds = isinstance(recipe.config, FootholdConfig)
 
-    def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
+    def loss_fn(model: Any, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
         past, x0, control = windows.draw(recipe.batch, generator)
         control = held_control(control, windows.T_h, recipe.held_control, generator)
@@ -305,8 +299,8 @@ def loss_of(
         if dropout is None:
             return training_loss(model, batch, schedule, generator, loss=loss)
         light = NoisedPastWeight(dropout, recipe.noised_past_weight)
-        both = {"dropout": light, "loss": light.weighted(loss)}
-        return training_loss(model, batch, schedule, generator, **both)
+        lighter = light.weighted(loss)
+        return training_loss(model, batch, schedule, generator, dropout=light, loss=lighter)
 
     return loss_fn
 
@@ -327,7 +321,7 @@ def weighted_loss(weights: LossWeights, windows: Windows, schedule: Schedule) ->
     return loss
 
 
-def dropout_of(recipe: Recipe, schedule: Schedule) -> Dropout | None:
+def dropout_of(recipe: WalkerRecipe, schedule: Schedule) -> Dropout | None:
     """The recipe's diffusion dropout, if it has one."""
     if not recipe.dropout:
         return None

@@ -21,7 +21,7 @@ from motiondiff_edu.performers.windows import Windows
 from motiondiff_edu.recipes import dancer, walker
 from motiondiff_edu.recipes.dancer import DANCER, DANCER_PLAIN, X0
 from motiondiff_edu.recipes.mofusion_loss import DanceLossWeights
-from motiondiff_edu.recipes.walker import MEND_DROPOUT, WALKER_EPS, WALKER_TRUNK, Recipe
+from motiondiff_edu.recipes.walker import MEND_DROPOUT, WALKER_EPS, WALKER_TRUNK, WalkerRecipe
 
 T_H, T_P = 4, 3
 SIZES = dict(
@@ -42,7 +42,7 @@ def seeded(seed: int = 8) -> torch.Generator:
     return torch.Generator().manual_seed(seed)
 
 
-# Recipe, rate of diffusion dropout, the loss of three batches of the code that trained what is
+# recipe, rate of diffusion dropout, the loss of three batches of the code that trained what is
 # shipped, and the next random number after them
 TRAINED_WITH = {
     "walker-trunk": (
@@ -154,7 +154,7 @@ def test_a_recipe_without_departures_is_algorithm_1(walks, rate, weight):
     schedule = linear_schedule(6, 0.2, 0.95)
     torch.manual_seed(0)
     model = MoDiff(MoDiffConfig(**SIZES | {"S": 6}))
-    recipe = Recipe("printed", model.config, steps=1, batch=7, held_control=0.0)
+    recipe = WalkerRecipe("printed", model.config, steps=1, batch=7, held_control=0.0)
     recipe = replace(recipe, noised_past_weight=weight)
     dropout = Dropout(schedule, lambda done: rate, 1, done=0.0) if rate else None
     loss = walker.loss_of(recipe, walks, schedule, dropout)(model, seeded())

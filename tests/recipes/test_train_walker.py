@@ -23,13 +23,13 @@ from motiondiff_edu.recipes.walker import (
     SHIPPED,
     WALKER_TRUNK,
     LossWeights,
-    Recipe,
+    WalkerRecipe,
     train,
     training_clips,
 )
 
 TINY = replace(MODIFF_SMALL, width=16, heads=2, hidden=24, T_p=5)
-SHORT = Recipe("short", TINY, steps=6, batch=3, clips=2, seconds=2.0, reversed_share=1.0)
+SHORT = WalkerRecipe("short", TINY, steps=6, batch=3, clips=2, seconds=2.0, reversed_share=1.0)
 
 
 def quiet(_: str) -> None:

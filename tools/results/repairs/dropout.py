@@ -15,7 +15,7 @@ import numpy as np
 from motiondiff_edu.metrics.walks import adherence
 from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.pretrained import checkpoints
-from motiondiff_edu.recipes.walker import MEND_PLAIN, Recipe, train, training_clips
+from motiondiff_edu.recipes.walker import MEND_PLAIN, WalkerRecipe, train, training_clips
 
 from ..sweep import Rows, Sweep, Variant, minus
 from ..walks.parts import weights_digest
@@ -145,7 +145,7 @@ KINDS = {
 }
 
 
-def map_recipe(name: str, budget: MapBudget, seed: int = 0) -> Recipe:
+def map_recipe(name: str, budget: MapBudget, seed: int = 0) -> WalkerRecipe:
     """The recipe of a walker with one constant rate of dropout."""
     rate = VARIANTS[name].recipe
     return replace(

@@ -29,7 +29,7 @@ from motiondiff_edu.motion.cleanup import clean_up
 from motiondiff_edu.motion.root_frame import root_path, to_root_frame, to_world
 from motiondiff_edu.motion.skeleton import TOES, J
 from motiondiff_edu.performers.walker import STEPS, Walker
-from motiondiff_edu.recipes.walker import LossWeights, Recipe, train, training_clips
+from motiondiff_edu.recipes.walker import LossWeights, WalkerRecipe, train, training_clips
 
 from ..repairs.trials import SHARE, continued
 from ..sweep import Rows, Sweep, Variant, minus
@@ -49,7 +49,7 @@ from .trials import T_H, UNSEEN, Choices, Trials, choices, rollouts_of, walker_g
 
 PLAN = Path(__file__).parents[3] / "docs" / "results" / "walker-departures" / "plan.json"
 X0 = replace(MODIFF_SMALL, target="x0", skip=False)
-BASE = Recipe("base", MODIFF_SMALL, steps=8_000, dropout=P_D)
+BASE = WalkerRecipe("base", MODIFF_SMALL, steps=8_000, dropout=P_D)
 
 
 def added(words: str, to: str = "base", **changes) -> Variant:
@@ -96,7 +96,7 @@ class Size:
 FULL, QUICK = Size(), Size(clips=4, pasts=2, each=3, seconds=6.5, steps=20, training=12)
 
 
-def recipe_of(name: str, seed: int, size: Size) -> Recipe:
+def recipe_of(name: str, seed: int, size: Size) -> WalkerRecipe:
     """The recipe of a variant, with the tuned rate of its optimiser.
 
     Raises ValueError where no rate was tried for that.

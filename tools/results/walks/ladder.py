@@ -26,7 +26,7 @@ from motiondiff_edu.recipes.walker import (
     MEND_CONFIG,
     OURS,
     LossWeights,
-    Recipe,
+    WalkerRecipe,
     train,
     training_clips,
 )
@@ -45,11 +45,11 @@ EPS = replace(MEND_CONFIG, target="eps", skip=False)
 EPS_SKIP = replace(MEND_CONFIG, target="eps", skip=True)
 FOOTHOLDS = FootholdConfig(**asdict(MEND_CONFIG))
 COMMON = {"steps": 0, "clips": 360}
-OUR_RECIPE = Recipe(
+OUR_RECIPE = WalkerRecipe(
     "ours", FOOTHOLDS, **COMMON, schedule="leap", optimizer="muon", batch=32, noises=2,
     past_noise=0.3, loss_weights=OURS,
 )  # fmt: skip
-PRINTED = Recipe("printed", EPS, **COMMON, lr=PRINTED_RATE, held_control=0.0, dropout=P_D)
+PRINTED = WalkerRecipe("printed", EPS, **COMMON, lr=PRINTED_RATE, held_control=0.0, dropout=P_D)
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Rung:
     Rungs of one whole recipe and one optimiser share a rate: only the choice that is named differs.
     """
 
-    recipe: Recipe
+    recipe: WalkerRecipe
     budget: float = 1.0  # times CPU_SECONDS
     rate: str = ""
 
@@ -122,7 +122,7 @@ class Size:
 FULL, QUICK = Size(), Size(clips=4, seconds=6.5, training=12, budget=0.002)
 
 
-def recipe_of(name: str, seed: int, size: Size) -> Recipe:
+def recipe_of(name: str, seed: int, size: Size) -> WalkerRecipe:
     """The recipe of a rung for one training seed, its steps and its rate filled in.
 
     Raises ValueError for a rung without a pace.
