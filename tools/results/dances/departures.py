@@ -1,0 +1,129 @@
+"""What each departure of the dancer is worth at its own size, from the simplest recipe up.
+
+`base` is MoFusion at the shipped width: eps with the skip, Adam, the cosine schedule, one linear
+layer of the music, and kinematic losses weighted by alpha_bar. Each other variant adds what its
+words say to another one. A training has a quarter of the shipped dancer's steps. Dances are sampled
+as `Dancer.dance` does it, and measured before the clean-up.
+docs/results/dancer-departures/plan.json has the validation loss of `base` for each rate that was
+tried, after 500 steps (`tried`); an optimiser has the rate with the smallest one.
+Source: MoFusion 3, 4.1.  Notebook: 12, 13
+"""
+
+import json
+from dataclasses import dataclass, replace
+from functools import cache, partial
+from pathlib import Path
+
+import torch
+
+from motiondiff_edu.mofusion import MOFUSION_SMALL
+from motiondiff_edu.performers.dancer import ETA, STEPS, Dancer
+from motiondiff_edu.pretrained.checkpoints import pretrained
+from motiondiff_edu.recipes.dancer import HEARING, SongRecipe, train_dancer, training_windows
+from motiondiff_edu.recipes.ear import EAR, ear_within
+from motiondiff_edu.recipes.mofusion_loss import KINEMATIC, DanceLossWeights
+
+from ..sweep import Sweep, Variant, minus
+from .parts import DANCED, DanceSize, Stage, danced
+from .songs import UNSEEN
+
+PLAN = Path(__file__).parents[3] / "docs" / "results" / "dancer-departures" / "plan.json"
+LINEAR_MUSIC = replace(MOFUSION_SMALL, music_layers=0)
+BASE = SongRecipe(
+    "base", LINEAR_MUSIC, steps=2_000, kinematic=KINEMATIC, optimizer="adam", ear=None
+)
+
+
+def added(words: str, to: str = "base", **changes) -> Variant:
+    """A variant with further changes of the recipe, and the one that it is compared with."""
+    before = {} if to == "base" else VARIANTS[to].recipe
+    return Variant(words, before | changes, {to: to})
+
+
+VARIANTS: dict[str, Variant] = {"base": Variant("MoFusion: eps with the skip, Adam", {})}
+VARIANTS |= {
+    "muon": added("Muon", optimizer="muon"),
+    "x0": added("x0 instead of eps", config=replace(LINEAR_MUSIC, target="x0", skip=False)),
+}
+VARIANTS |= {
+    "convolutions": added("convolutions over the Mel", "muon", config=MOFUSION_SMALL),
+    "muon-x0": added(
+        "x0 instead of eps", "muon", config=replace(LINEAR_MUSIC, target="x0", skip=False)
+    ),
+}
+VARIANTS |= {
+    "more-noise": added("a schedule with more noise", "muon-x0", snr=0.1),
+    "x0-convolutions": added(
+        "convolutions over the Mel", "muon-x0",
+        config=replace(MOFUSION_SMALL, target="x0", skip=False),
+    ),
+    "ear": added("an ear", "muon-x0", config=HEARING, ear=EAR),
+    "changes": added(
+        "errors of changes", "muon-x0", loss_weights=DanceLossWeights(changes=5.0)
+    ),
+    "toes": added("errors of toes", "muon-x0", loss_weights=DanceLossWeights(toes=0.2)),
+    "gain-noise": added("music as from different loudspeakers", "muon-x0", gain_noise=0.3),
+    "guidable": added("music left out at times", "muon-x0", no_music=0.15),
+    "no-kinematics": added("no kinematic losses", "muon-x0", kinematic=None),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Size:
+    """How much is danced; steps and songs of the training (None: all)."""
+
+    measured: DanceSize = DanceSize(songs=30, seeds=2, pieces=10, each=8)
+    steps: int | None = None
+    songs: int | None = None
+
+
+FULL = Size()
+QUICK = Size(DanceSize(songs=3, seeds=1, pieces=2, each=2), steps=3, songs=2)
+
+
+def recipe_of(name: str, seed: int, size: Size) -> SongRecipe:
+    """The recipe of a variant, with the tuned rate of its optimiser.
+
+    Raises ValueError where no rate was tried for that.
+    """
+    recipe = replace(BASE, **VARIANTS[name].recipe)
+    tried = json.loads(PLAN.read_text(encoding="utf-8"))["tried"].get(recipe.optimizer)
+    if not tried:
+        raise ValueError(
+            f"{PLAN} has no rate for {recipe.optimizer}: try some, and note them there"
+        )
+    rate = float(min(tried, key=tried.get))
+    steps, songs = size.steps or recipe.steps, size.songs or recipe.songs
+    name = f"dancer-departures-{name}"
+    return replace(recipe, name=name, seed=seed, lr=rate, steps=steps, songs=songs)
+
+
+@cache
+def stage(size: DanceSize) -> Stage:
+    """The songs of the measurement: the same for all."""
+    return Stage(size)
+
+
+def sweep(size: Size, runs: Path) -> Sweep:
+    """The variants, trained on one thread, whatever the machine has; ears are the shipped one."""
+
+    def trained(name: str, seed: int) -> Dancer:
+        torch.set_num_threads(1)
+        recipe = recipe_of(name, seed, size)
+        ear = ear_within(pretrained("dancer")) if recipe.ear else None
+        run, log = runs / f"{name}-{seed}.safetensors", partial(print, flush=True)
+        return train_dancer(recipe, run, training_windows(recipe), log, ear)
+
+    def about(name: str) -> dict:
+        recipe, measured = recipe_of(name, 0, size), size.measured
+        found = {"data": UNSEEN, "songs": measured.songs, "samples": measured.seeds}
+        found |= {"pieces": [measured.pieces, measured.each], "ddim_steps": STEPS, "eta": ETA}
+        found |= {"steps": recipe.steps, "rate": recipe.lr, "trained_songs": recipe.songs}
+        return found | {"widths": list(recipe.config.widths)}
+
+    return Sweep(
+        "dancer-departures", VARIANTS, trained,
+        lambda name, dancer, seed: danced(stage(size.measured), dancer).rows,
+        DANCED, {f"{kind}_minus_{{}}": minus(how) for kind, how in DANCED.items()}, about,
+        (0, 1, 2),
+    )  # fmt: skip
