@@ -5,6 +5,7 @@ every 0.8 s. Windows start there, so that the Mel frames have the same times in 
 Source: MoFusion 4.1; lengths are ours, for the paper gives only those of its dances, 7.4 to 48 s.
 """
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -15,7 +16,7 @@ from torch import Tensor
 
 from ..conditions.music import frame_times
 from ..motion.dance_frame import mirror, to_features, to_positions
-from ..motion.motion import Motion, MotionError
+from ..motion.motion import Motion, MotionError, MotionWarning
 from ..motion.planting import find_contacts
 from ..motion.scaler import Scaler
 from ..motion.skeleton import TOES
@@ -59,6 +60,7 @@ class DanceWindows:
 
         Consecutive dances with the same tensor in `mels` share it. `mels=None` is for motion
         without music, C = 0.
+        Warns with the number of dances that are shorter than a window: they are left out.
         Raises ValueError when no dance is long enough, or lists or lengths do not match.
         """
         mels = (
@@ -78,6 +80,7 @@ class DanceWindows:
         starts = []
         song_starts = []
         songs = []
+        short = 0
         first = 0
         song = 0
         for dance, mel in zip(dances, mels, strict=True):
@@ -85,6 +88,7 @@ class DanceWindows:
                 song += len(songs[-1]) if songs else 0
                 songs.append(mel)
             last = min(len(dance) - n, (len(mel) - mel_frames(n)) // MEL_GRID * MOTION_GRID)
+            short += last < 0
             starts += range(first, first + last + 1, MOTION_GRID)
             song_starts += (
                 range(song, song + last // MOTION_GRID * MEL_GRID + 1, MEL_GRID)
@@ -94,6 +98,13 @@ class DanceWindows:
             first += len(dance)
         if not starts:
             raise ValueError(f"no dance has {n} frames with music")
+        if short:
+            warnings.warn(
+                f"{short} of {len(dances)} dances are left out: with their music they are "
+                f"shorter than a window of {n} frames, {n / FPS:g} s",
+                MotionWarning,
+                stacklevel=2,
+            )
         positions = torch.from_numpy(np.concatenate(dances)).float()
         stands, mel = torch.from_numpy(np.concatenate(contacts)), torch.cat(songs).float()
         units = Scaler.fit(mel) if mel.shape[1] else Scaler.nothing(0)

@@ -6,7 +6,7 @@ import notebook_cells
 import pytest
 
 from motiondiff_edu.diffusion_dropout import P_D
-from motiondiff_edu.modiff import MODIFF_PAPER, MoDiffConfig
+from motiondiff_edu.modiff import MODIFF_PAPER, MODIFF_SMALL, MoDiffConfig
 from motiondiff_edu.recipes.walker import WALKER, WALKER_PAPER, WALKER_PLAIN, WALKER_TRUNK
 
 
@@ -60,6 +60,8 @@ def test_what_is_trained_in_the_notebook_is_as_its_cells_are(table, notebook):
     steps = int(number(r"run.pick[(](\d+)"))
     assert live["steps"] == f"{steps:,}"
     assert live["windows a step"] == number(r"data_set.draw[(](\d+), generator")
-    assert live["optimiser, first rate"] == "Adam, " + number(r"cosine_lr[(]([-e0-9]+)")
-    assert live["past"] == "noise, " + number(r"past_noise[(]past, ([.0-9]+)")
-    assert "ddpm.linear_schedule(100)" in code and "power=1.0" in code
+    assert live["optimiser, first rate"] == "Muon, " + number(r"cosine_lr[(]([-e0-9]+)")
+    assert live["noise schedule"] == "*leap*"
+    assert "optimizer=MuonAndAdam(network)" in code and "leap_schedule(100)" in code
+    assert live["predicts"] == "eps, with the skip" and live["past"] == "as it is"
+    assert MODIFF_SMALL.target == "eps" and MODIFF_SMALL.skip

@@ -7,7 +7,7 @@ from synthetic_dance import material, windows
 
 from motiondiff_edu.kinematic_loss import kinematic_parts
 from motiondiff_edu.motion.dance_frame import body_of, to_positions
-from motiondiff_edu.motion.motion import Motion, MotionError
+from motiondiff_edu.motion.motion import Motion, MotionError, MotionWarning
 from motiondiff_edu.motion.planting import find_contacts
 from motiondiff_edu.motion.skeleton import JOINTS, MIRROR, TOES
 from motiondiff_edu.performers.dance_windows import DanceWindows, mel_frames, toes_moved
@@ -116,6 +116,16 @@ def test_wrong_inputs():
         DanceWindows.of(dances, [contacts[0], contacts[1][:-10]], mels, 40)
     with pytest.raises(ValueError, match="no dance has 400 frames"):
         DanceWindows.of(dances, contacts, mels, 400)
+
+
+def test_dances_that_are_too_short_are_counted_and_left_out():
+    dances, contacts, mels = material()
+    whole = DanceWindows.of(dances, contacts, mels, 40)
+    with pytest.warns(MotionWarning, match="1 of 3 dances are left out.* 40 frames, 2 s"):
+        made = DanceWindows.of(
+            [*dances, dances[0][:39]], [*contacts, contacts[0][:39]], [*mels, mels[0].clone()], 40
+        )
+    assert len(made) == len(whole)
 
 
 def seeded() -> torch.Generator:

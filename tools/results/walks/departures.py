@@ -68,17 +68,20 @@ VARIANTS |= {
     "muon-leap": added("leap schedule", "muon", schedule="leap"),
 }
 VARIANTS |= {
-    "near": added("near frames count more", "muon-leap", loss_weights=LossWeights(near=1.0)),
-    "bones": added("errors of bones", "muon-leap", loss_weights=LossWeights(bones=2.0)),
-    "high-noise": added("high noise counts more", "muon-leap",
-                        loss_weights=LossWeights(high_noise=3.0)),
     "past-noise": added("past noise instead of dropout", "muon-leap", past_noise=0.3, dropout=()),
     "no-dropout": added("no diffusion dropout", "muon-leap", dropout=()),
-    "two-noises": added("two noises for each window", "muon-leap", noises=2),
-    "x0": added("x0 instead of eps", "muon-leap", config=X0),
-    "v": added("v instead of eps", "muon-leap", config=replace(X0, target="v")),
-    "footholds": added("x0 with footholds", "muon-leap", config=FootholdConfig(**asdict(X0))),
-}  # fmt: skip
+}
+VARIANTS |= {
+    "both": added("diffusion dropout as well", "past-noise", dropout=P_D),
+    "near": added("near frames count more", "past-noise", loss_weights=LossWeights(near=1.0)),
+    "bones": added("errors of bones", "past-noise", loss_weights=LossWeights(bones=2.0)),
+    "high-noise": added(
+        "high noise counts more", "past-noise", loss_weights=LossWeights(high_noise=3.0)
+    ),
+    "two-noises": added("two noises for each window", "past-noise", noises=2),
+    "x0": added("x0 instead of eps", "past-noise", config=X0),
+    "footholds": added("x0 with footholds", "past-noise", config=FootholdConfig(**asdict(X0))),
+}
 
 
 @dataclass(frozen=True)
