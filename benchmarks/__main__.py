@@ -1,6 +1,6 @@
 """Run the benchmarks, each in its own process.
 
-python -m benchmarks [import | frame | mel | unet | walker | player | encoding | mover ...]
+python -m benchmarks [import | frame | mel | unet | walker | player | mover ...]
 
 Records go to benchmarks/results/*.json; `python -m tools.results --render` puts them into
 docs/RESULTS.md. On a shared machine only the ratios are meaningful: both sides are timed in turn,
@@ -21,7 +21,6 @@ BENCHMARKS = {
     "unet": "unet.py",
     "walker": "walker_80s.py",
     "player": "player_audio.py",
-    "encoding": "shared_encoding.py",
     "mover": "mover.py",
 }
 

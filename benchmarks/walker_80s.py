@@ -22,6 +22,7 @@ from pathlib import Path
 
 import numpy as np
 import torch
+from budget import BUDGET, train_for
 from records import show, write_records
 
 sys.path.insert(0, str(Path(__file__).parents[1]))  # tools, beside this folder
@@ -30,7 +31,6 @@ from data_synth.walking import dataset, random_control, walk  # noqa: E402
 from data_synth.walking.styles import STYLES  # noqa: E402
 from motiondiff_edu.motion.augment import mirror  # noqa: E402
 from motiondiff_edu.motion.clip import Clip  # noqa: E402
-from motiondiff_edu.recipes.budget import BUDGET, train_for  # noqa: E402
 from motiondiff_edu.recipes.walker import MEND_CONFIG  # noqa: E402
 from tools.results.walks.scores import score  # noqa: E402
 from tools.results.walks.trials import (  # noqa: E402

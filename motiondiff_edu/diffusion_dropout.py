@@ -70,13 +70,6 @@ def chosen(n: int, rate: float, generator: torch.Generator | None = None) -> Boo
     return torch.rand(n, generator=generator) < rate
 
 
-def changed_samples(
-    before: Float[Tensor, "B ..."], after: Float[Tensor, "B ..."]
-) -> Bool[Tensor, "B"]:
-    """Which samples of a batch a dropout has changed."""
-    return (before != after).flatten(1).any(1)
-
-
 @dataclass
 class Dropout:
     """Diffusion dropout for one training run: `modiff.training_loss(..., dropout=dropout)`.

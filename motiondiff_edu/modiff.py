@@ -11,7 +11,7 @@ Source: MoDiff III-F, IV-A, Fig. 2.  Notebook: 07
 
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import Any
 
 import torch
@@ -123,11 +123,6 @@ class Memory:
     layers: tuple[KeysValues, ...]
     self_bias: Float[Tensor, "1 H T_p T_p"]
     memory_bias: Float[Tensor, "1 H T_p M"]
-
-    def rows(self, chosen: Int[Tensor, "N"]) -> "Memory":
-        """The memory of some samples of the batch."""
-        layers = (KeysValues(*(part[chosen] for part in layer)) for layer in self.layers)
-        return replace(self, layers=tuple(layers))
 
 
 class MoDiff(nn.Module):

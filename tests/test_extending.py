@@ -153,12 +153,6 @@ def test_the_plain_network_learns_is_saved_and_walks(page, folder, monkeypatch):
         md.load(folder / "plain.safetensors")
 
 
-def test_shared_encoding_alone_needs_a_memory_with_rows(page, folder):
-    recipe = replace(page["recipe"], config=page["PlainConfig"](), noises=2, steps=1)
-    with pytest.raises(AttributeError, match="rows"):
-        page["train"](recipe, folder / "shared-run.safetensors", page["clips"])
-
-
 def test_a_fourth_column_of_control_moves_the_hand(page):
     low, high = (hand_of(page, name, 20) for name in ("low", "high"))
     assert low == pytest.approx(0.95, abs=0.15) and high == pytest.approx(1.6, abs=0.2)
@@ -219,4 +213,4 @@ def test_the_command_of_the_page_begins_a_training_on_the_folder(root, folder, m
     monkeypatch.setattr(command, "build", build)
     monkeypatch.setattr(sys, "argv", ["recipes", *arguments[:-1], "cpu"])
     command.main()
-    assert asked == [("walker-eps", "walker-eps-own.safetensors", "my_walks", "cpu")]
+    assert asked == [("walker", "walker-own.safetensors", "my_walks", "cpu")]

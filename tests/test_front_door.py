@@ -319,7 +319,7 @@ def test_a_figure_that_lies_is_not_continued(walked):
 
 
 def test_a_performer_is_shown_in_one_line():
-    for name, begins in (("walker", "Walker 'walker': FootholdMoDiff of 1,4"), ("mover", "Mover")):
+    for name, begins in (("walker", "Walker 'walker': MoDiff of 1,4"), ("mover", "Mover")):
         assert repr(md.load(name)).startswith(begins) and len(repr(md.load(name))) < 150
 
 

@@ -189,14 +189,6 @@ def test_a_memory_belongs_to_its_past_and_its_control():
         assert not torch.allclose(model.decode(x_s, s, model.encode(*other)), wanted, atol=1e-4)
 
 
-@torch.no_grad()
-def test_rows_of_a_memory_are_those_of_the_samples():
-    model, (x_s, s, past, control) = lively(TINY), inputs(TINY)
-    chosen = torch.tensor([2, 0, 2, 1])
-    some = model.decode(x_s[chosen], s[chosen], model.encode(past, control).rows(chosen))
-    torch.testing.assert_close(some, model(x_s, s, past, control)[chosen])
-
-
 def test_the_wiring_by_hand():
     """Which table goes where, and when everything happens.
 

@@ -20,10 +20,9 @@ OPEN = {
     "widgets/explore.py explore": "the keywords are the parameters of the function that is drawn",
     "widgets/explore.py refresh": "as `explore`",
     "widgets/controls.py steering": "the keywords are those of the function that is steered",
-    "results/walks/ladder.py out": "the keywords are fields of a Recipe, as in `replace`",
-    "results/walks/ladder.py into": "as `out`",
-    "results/walks/departures.py added": "as `out`",
-    "results/dances/budget.py differs": "as `out`, of a DanceRecipe",
+    "results/walks/departures.py added": "the keywords are fields of a recipe, as in `replace`",
+    "results/dances/departures.py added": "as in walks/departures.py",
+    "results/dances/budget.py differs": "as `added`, of a DanceRecipe",
     "tools/mutants.py _with": "the keywords are fields of a node, as in `replace`",
 }
 

@@ -3,8 +3,7 @@
 With a joystick the control after the step about to be taken is not known, so a rollout holds it.
 A network that was always trained with the true future control would trust a held one as well. So in
 a share of the windows the control is held over the future, as in a rollout.
-Gain: docs/RESULTS.md, *From the paper's walker to ours* (`ladder.ours-never-held.*`,
-docs/results/ladder). At that size there is none: every interval contains 0.
+Beside it: docs/RESULTS.md, *From the paper's walker to ours* (`walker-departures.never-held.*`).
 Ours; MoDiff takes the control up to t + T_p as known.  Notebook: 07
 """
 

@@ -4,30 +4,26 @@ A *loss* takes the error of the network's target (B, T, D) and the steps s (B,),
 number; the papers use `ddpm.squared_error`. `total` adds losses. All of them are sums of squares
 of the error or of its differences, and the error times sqrt(w) has a square with the weight w. So
 `weighted_by_step` can wrap any loss. `weighted` has a limit: a difference must be of two errors of
-one weight. Weights of frames suit the squared error and `bones`, those of columns the squared error
-and `changes`. Otherwise an error that both ends share counts as well, which is right only where the
-weights convert units (`recipes.inbetweener`).
+one weight. Weights of columns suit the squared error and `changes`. Otherwise an error that both
+ends share counts as well, which is right only where the weights convert units
+(`recipes.inbetweener`).
 
-    in_metres = weighted(squared_error, metre_weights(std))
-    loss = weighted(total(in_metres, bones(2, std)), near_weights(change))
+    loss = total(weighted(squared_error, metre_weights(std)), changes(5))
 
-Gain: docs/RESULTS.md, *From the paper's walker to ours* (`ladder.ours-plain-loss.*`): bone errors
-are smaller, feet slide more and the control is kept less well. docs/RESULTS_ALL.md
-(`dance-budget.poses.*`, `.no-feet.*`, `.eps-weighted.*`).
+Gain: docs/RESULTS_ALL.md (`dance-budget.poses.*`, `.no-feet.*`, `.eps-weighted.*`).
 Ours; neither paper has them.
-Notebook: 07, 12
+Notebook: 12
 """
 
 from collections.abc import Callable
 from functools import reduce
 
-import numpy as np
 import torch
 from jaxtyping import Float, Int
 from torch import Tensor
 
 from ..ddpm import Schedule, Table, at
-from ..motion.skeleton import BONES, TOES
+from ..motion.skeleton import TOES
 
 Error = Float[Tensor, "B T D"]
 Loss = Callable[[Error, Int[Tensor, "B"]], Float[Tensor, ""]]
@@ -35,10 +31,7 @@ Moves = Callable[[Error], Float[Tensor, "B T2 21 3"]]
 
 
 def total(*losses: Loss) -> Loss:
-    """The sum of losses.
-
-    Notebook: 07
-    """
+    """The sum of losses."""
     return lambda error, s: reduce(torch.add, (loss(error, s) for loss in losses))
 
 
@@ -46,11 +39,10 @@ def total(*losses: Loss) -> Loss:
 def weighted(
     loss: Loss, weights: Float[Tensor, "D"] | Float[Tensor, "T 1"] | Float[Tensor, "B T D"]
 ) -> Loss:
-    """A loss whose squares have weights, by column (`metre_weights`), frame (`near_weights`) or
+    """A loss whose squares have weights, by column (`metre_weights`), frame or
     entry.
 
-    Losses of differences (`bones`, `changes`, `toe_changes`) do not suit all of them: see above.
-    Notebook: 07
+    Losses of differences (`changes`, `toe_changes`) do not suit all of them: see above.
     """
     roots = weights.sqrt()
     return lambda error, s: loss(roots.to(error) * error, s)
@@ -67,22 +59,9 @@ def metre_weights(std: Float[Tensor, "D"], power: float = 2.0) -> Float[Tensor, 
 
     Power 2 measures errors in metres, power 0 in standard deviations.
 
-    A toe moves ten times as far as a hip, so in metres its errors count more.   Notebook: 07
+    A toe moves ten times as far as a hip, so in metres its errors count more.
     """
     weights = std**power
-    return weights / weights.mean()
-
-
-def near_weights(change: Float[Tensor, "T D"], power: float = 1.0) -> Float[Tensor, "T 1"]:
-    """Weights of future frames: 1 / (how far poses move until then)^power, with mean 1.
-
-    `change` is how far each column moves in 1, 2, ... frames, in metres. The first frame moves
-    least and gets the largest weight; it is the only frame of a window that a rollout keeps.
-    Raises ValueError where nothing moves.
-    """
-    if not change.any(1).all():
-        raise ValueError("nothing moves in these windows, so no frame is nearer than another")
-    weights = 1 / change.square().mean(1, keepdim=True).sqrt() ** power
     return weights / weights.mean()
 
 
@@ -105,26 +84,6 @@ def as_x0_errors(schedule: Schedule) -> Table:
 
 
 # ---- terms ---------------------------------------------------------------------------------------
-def bones(weight: float, std: Float[Tensor, "D"]) -> Loss:
-    """weight * mean of `bone_errors` / mean variance of a column; for x0 in the root frame.
-
-    If knee and ankle have the same error, the shin keeps its length; the errors of single joints do
-    not show that. `std` converts errors to metres.  Notebook: 07
-    """
-    share = weight / std.square().mean()
-    return lambda error, s: share.to(error) * bone_errors(error * std.to(error)).mean()
-
-
-def bone_errors(error: Float[Tensor, "B T D"]) -> Float[Tensor, "B T 20"]:
-    """Squared difference between each joint's error and its parent's, averaged over the axes.
-
-    `error` is in metres.
-    """
-    joints = error.unflatten(-1, (-1, 3))
-    parents, children = np.array(BONES).T
-    return (joints[..., children, :] - joints[..., parents, :]).square().mean(-1)
-
-
 def changes(weight: float) -> Loss:
     """weight * the squared error of changes from frame to frame.
 

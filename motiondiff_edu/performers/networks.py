@@ -129,37 +129,28 @@ class MoverNetwork(AnyNetwork, Protocol):
 
 @dataclass(frozen=True)
 class Network:
-    """A kind of network: its class, its configuration, and its builder."""
+    """A kind of network: its class and its configuration."""
 
     performer: str
-    model: type[nn.Module]
+    model: Callable[..., Any]
     config: type
-    build: Callable[..., Any]
 
 
 _NETWORKS: dict[str, Network] = {}
 
 
-def register(
-    performer: str,
-    model: type[nn.Module],
-    config: type,
-    *,
-    build: Callable[..., nn.Module] | None = None,
-) -> None:
+def register(performer: str, model: type[nn.Module], config: type) -> None:
     """Register a network for a performer, one of NEEDED; files name it by its class.
 
-    model   the class. All networks but an in-betweener's have `decode(x_s, s, memory)`, which
-            returns the target, and `encode`, which makes the memory once for all steps: of past and
-            control for a walker, of music and a number of frames for a dancer, of a text and frames
-            for a mover. For training they are called with (x_s, s, past, control), or (x_s, s,
-            music). A dancer's has also `listen(mel, times)`, which makes that music, a mover's
-            `listen(texts)`. A mover that plans is a `PlannedMoFusion`. An in-betweener's has the
-            methods of `KeyframeMoFusion`
+    model   the class, which is called with a configuration. All networks but an in-betweener's have
+            `decode(x_s, s, memory)`, which returns the target, and `encode`, which makes the memory
+            once for all steps: of past and control for a walker, of music and a number of frames
+            for a dancer, of a text and frames for a mover. For training they are called with
+            (x_s, s, past, control), or (x_s, s, music). A dancer's has also `listen(mel, times)`,
+            which makes that music, a mover's `listen(texts)`. A mover that plans is a
+            `PlannedMoFusion`. An in-betweener's has the methods of `KeyframeMoFusion`
     config  a frozen dataclass with a default for every field, including `target`; the network keeps
             it as `.config`
-    build   `build(config, *scalers)` makes a new network (default: `model(config)`); the scalers
-            are those of poses and control, or of motion and Mel
     Raises ValueError for an unknown performer, a name or a configuration that another class has,
     a network that lacks a method, and a configuration that lacks a field or a default.
     """
@@ -195,8 +186,7 @@ def register(
             f"{config.__name__} belongs to {_full_name(same[0].model)}: a configuration names one "
             f"network, so make a subclass of it for {model.__name__}"
         )
-    make = build or (lambda config, *scalers: model(config))
-    _NETWORKS[model.__name__] = Network(performer, model, config, make)
+    _NETWORKS[model.__name__] = Network(performer, model, config)
 
 
 def networks_of(performer: str) -> dict[str, Network]:
@@ -210,18 +200,18 @@ def kind_of(model: object) -> Network | None:
     return found if found and _full_name(found.model) == _full_name(type(model)) else None
 
 
-def network(config: Config, *scalers) -> Any:
+def network(config: Config) -> Any:
     """A new network for a configuration.
 
     Raises ValueError for a configuration without a registered network.
     """
     for one in _NETWORKS.values():
         if one.config is type(config):
-            return one.build(config, *scalers)
+            return one.model(config)
     raise ValueError(
         f"no network is registered for {type(config).__name__}; call performers.networks.register"
     )
 
 
-def _full_name(kind: type) -> str:
+def _full_name(kind: Any) -> str:
     return f"{kind.__module__}.{kind.__qualname__}"

@@ -13,7 +13,6 @@ from jaxtyping import Float
 from torch import Tensor
 
 from .. import rollout
-from ..beyond.footholds import FootholdConfig, FootholdMoDiff
 from ..conditions.control import as_long
 from ..ddpm import Denoiser, Generators, ddim_steps, draw, final, sample_steps
 from ..modiff import MoDiff, MoDiffConfig
@@ -39,7 +38,6 @@ from .performer import Performer, bar, generators
 STEPS = 10  # default of DDIM: as good as DDPM with all steps, and ten times as fast (RESULTS)
 
 register("walker", MoDiff, MoDiffConfig)
-register("walker", FootholdMoDiff, FootholdConfig, build=FootholdMoDiff)
 
 
 def check_upright(motion: Motion) -> None:

@@ -184,7 +184,7 @@ def _assembled(
     vectors = {f"{name}.{part}": size for name, size in sizes.items() for part in ("mean", "std")}
     check_sizes(tensors, vectors | {"schedule.beta": config.S})
     scalers = [scaler_of(tensors, name) for name in kind.scalers]
-    build = partial(networks[metadata.get("network", kind.usual)].build, config, *scalers)
+    build = partial(networks[metadata.get("network", kind.usual)].model, config)
     weights = weights_of(tensors)
     if not shipped:  # torch takes a second to import what an outline needs
         refuse_other_shapes(build, weights)

@@ -3,7 +3,7 @@
 Adam scales every weight separately. Muon replaces the averaged gradient of a whole matrix by the
 nearest matrix whose singular values are all one. So directions that are rare in the gradient learn
 as fast as the common ones. A step takes longer, but the walkers need far fewer steps;
-`python -m tools.results --only ladder.ours-adam` compares both. Ours: the papers use Adam.
+`python -m tools.results --only walker-departures.muon` compares both. Ours: the papers use Adam.
 Notebook: 07
 """
 

@@ -1,11 +1,11 @@
-"""How walkers are made: data, windows, Algorithm 1 with a recipe's departures.
+"""How walkers are made: data, windows, and Algorithm 1 with past noise and held control.
 
-Each shipped walker is one record. The numbers of `footholds` were chosen on walks; nothing else is
-tuned by hand. A killed run continues where it was saved last.
+`loss_of` is the whole of what is trained, `train` the whole of how. A killed run continues where it
+was saved last.
 
 Source: MoDiff IV-A gives Adam, batch 64, 5e-5 and 1000 epochs on a GPU: WALKER_PAPER. The others
-are ours, for one core and about an hour each. WALKER_TRUNK and `walker-eps` had four fifths of
-their steps in bfloat16; the card of `walker-eps` says so.
+are ours, for one core and an hour or two each.
+Notebook: 07
 """
 
 import hashlib
@@ -18,14 +18,10 @@ import torch
 from torch import Tensor
 
 from .._files import digest_of_tensors
-from ..beyond import loss_terms
-from ..beyond.footholds import CleanFootholds, FootholdConfig
 from ..beyond.held_control import held_control
-from ..beyond.noised_past_weight import NoisedPastWeight
 from ..beyond.past_noise import past_noise
 from ..beyond.schedules import SCHEDULES
-from ..beyond.shared_encoding import SharedEncoding, repeated
-from ..ddpm import Schedule, squared_error
+from ..ddpm import Schedule
 from ..diffusion_dropout import P_D, START, Dropout, dropout_rate
 from ..modiff import MODIFF_PAPER, MODIFF_SMALL, MoDiffConfig, training_loss
 from ..motion.augment import mirror, reverse_time
@@ -40,43 +36,21 @@ from .training import Provenance, Recipe, on_device, train_recipe
 
 # ---- recipes -------------------------------------------------------------------------------------
 @dataclass(frozen=True)
-class LossWeights:
-    """What the loss adds to eq. 10, by the names of `beyond.loss_terms`. All 0 is the paper's loss.
-
-    `metres`: power of `metre_weights`.  `near`: power of `near_weights`.
-    `high_noise`: largest extra weight of `high_noise_weights`.  `bones`: weight of `bones`.
-    """
-
-    metres: float = 0.0
-    near: float = 0.0
-    high_noise: float = 0.0
-    bones: float = 0.0
-
-
-@dataclass(frozen=True)
 class WalkerRecipe(Recipe):
-    """One training run of a walker.
+    """The sizes and rates of one training run of a walker.
 
-    The defaults of optimizer and loss are the paper's, without its diffusion dropout. The paper
-    gives no schedule: the linear one is TimeGrad's. The rate, the data and the held control are
-    ours.
     `clips` clips of `seconds` each are made from the data seed; later they are mirrored, and some
     are reversed in time.
     """
 
-    config: WalkerConfig  # of a network for walkers (`performers.networks`)
-    lr: float = 2e-3
-    optimizer: str = "adam"
-    schedule: str = "linear"  # or "leap": `beyond.schedules`
+    config: WalkerConfig
+    lr: float = 4e-3
+    schedule: str = "leap"  # or "linear": `beyond.schedules`
     batch: int = 64  # windows a step
-    noises: int = 1  # diffusion steps drawn for each window: `beyond.shared_encoding`
     held_control: float = 0.5  # share of the windows: `beyond.held_control`
-    past_noise: float = 0.0  # standard deviations: `beyond.past_noise`
-    foot_noise: float = 0.05  # fraction of it under the held feet: `beyond.footholds`
-    loss_weights: LossWeights = LossWeights()
+    past_noise: float = 0.3  # standard deviations, at most: `beyond.past_noise`
     dropout: tuple[float, ...] = ()  # rates P_d of diffusion dropout in turn; none: no dropout
     dropout_start: float = START  # share of the training before the first of them
-    noised_past_weight: float = 1.0  # of windows with a noised past: `beyond.noised_past_weight`
     begins_with: str = ""  # the recipe whose network this training continues; none: a fresh one
     clips: int = 720
     seconds: float = 20.0
@@ -84,58 +58,34 @@ class WalkerRecipe(Recipe):
     styles: tuple[str, ...] | None = None  # of walking; None: all
 
     def __post_init__(self):
-        """Raises ValueError for batch or noises under 1, and an unknown schedule or optimizer."""
+        """Raises ValueError for a batch under 1, and an unknown schedule or optimizer."""
         super().__post_init__()
         if self.schedule not in SCHEDULES:
             raise ValueError(f"schedule must be {' or '.join(SCHEDULES)}, not {self.schedule!r}")
-        if min(self.batch, self.noises) < 1:
-            raise ValueError(
-                f"a batch needs a window and a noise at least, not batch = {self.batch}, "
-                f"noises = {self.noises}"
-            )
+        if self.batch < 1:
+            raise ValueError(f"a batch needs a window at least, not batch = {self.batch}")
 
 
-SMALL_FEET = FootholdConfig(width=128, hidden=256, cross_layers=2)  # MODIFF_SMALL with footholds
-OURS = LossWeights(metres=2.0, near=1.0, bones=2.0)
 # The paper's rate of diffusion dropout is 0 at first. So `walker` and `walker-plain` have the first
 # part of their training in common, WALKER_TRUNK, and each continues it: with the paper's rates, and
 # without. The learning rate falls to 0 in both parts.
-WALKER_TRUNK = WalkerRecipe(
-    "walker-trunk",
-    SMALL_FEET,
-    steps=20_000,
-    schedule="leap",
-    optimizer="muon",
-    noises=2,
-    past_noise=0.3,
-    loss_weights=OURS,
-)
+WALKER_TRUNK = WalkerRecipe("walker-trunk", MODIFF_SMALL, steps=20_000)
 WALKER_PLAIN = replace(
-    WALKER_TRUNK,
-    name="walker-plain",
-    begins_with="walker-trunk",
-    steps=12_000,
-    lr=1e-3,
-    seed=1,
+    WALKER_TRUNK, name="walker-plain", begins_with="walker-trunk", steps=12_000, lr=2e-3, seed=1
 )
-WALKER = replace(
-    WALKER_PLAIN, name="walker", dropout=P_D, dropout_start=0.0, noised_past_weight=0.2
-)
-WALKER_EPS = replace(
-    WALKER_TRUNK,
-    name="walker-eps",
-    config=MODIFF_SMALL,
-    loss_weights=replace(OURS, high_noise=3.0),
-)
+WALKER = replace(WALKER_PLAIN, name="walker", dropout=P_D, dropout_start=0.0)
 # The paper's recipe as it stands, at our small size: eps without a skip, Adam at 5e-5, batch 64,
-# the plain loss, diffusion dropout, control never held. Ours: the data, the warm-up and cosine of
-# the rate, and what the paper does not give: the linear schedule is TimeGrad's.
+# diffusion dropout, control never held. Ours: the data, the warm-up and cosine of the rate, and
+# what the paper does not give: the linear schedule is TimeGrad's.
 WALKER_PRINTED = WalkerRecipe(
     "walker-printed",
     replace(MODIFF_SMALL, skip=False),
     steps=12_000,
     lr=5e-5,
+    optimizer="adam",
+    schedule="linear",
     held_control=0.0,
+    past_noise=0.0,
     dropout=P_D,
 )
 # The same at the paper's sizes. Ours: 300,000 steps and not 1000 epochs, for our data have windows
@@ -147,24 +97,10 @@ WALKER_PAPER = replace(
 # Pairs of small walkers, alike but for diffusion dropout, each with three training seeds: notebooks
 # 09 and 10. Their pasts have no other noise: past noise is our alternative to the paper's dropout.
 MEND_CONFIG = MoDiffConfig(
-    width=64,
-    hidden=128,
-    motion_layers=1,
-    control_layers=1,
-    cross_layers=2,
-    decoder_layers=2,
-    target="x0",
-    skip=False,
+    width=64, hidden=128, motion_layers=1, control_layers=1, cross_layers=2, decoder_layers=2
 )
 MEND_PLAIN = replace(
-    WALKER_TRUNK,
-    name="mend-plain",
-    config=MEND_CONFIG,
-    steps=8000,
-    batch=32,
-    lr=3e-3,
-    past_noise=0.0,
-    clips=360,
+    WALKER_TRUNK, name="mend-plain", config=MEND_CONFIG, steps=8000, past_noise=0.0, clips=360
 )
 MEND_DROPOUT = replace(MEND_PLAIN, name="mend-dropout", dropout=P_D)
 PAIRS = tuple(
@@ -173,11 +109,11 @@ PAIRS = tuple(
     for one in (MEND_PLAIN, MEND_DROPOUT)
 )
 
-SHIPPED = (WALKER, WALKER_PLAIN, WALKER_PRINTED, WALKER_EPS, *PAIRS)
+SHIPPED = (WALKER, WALKER_PLAIN, WALKER_PRINTED, *PAIRS)
 RECIPES = {recipe.name: recipe for recipe in (*SHIPPED, WALKER_TRUNK, WALKER_PAPER)}
 
 
-# ---- training ------------------------------------------------------------------------------------
+# ---- data ----------------------------------------------------------------------------------------
 def training_clips(recipe: WalkerRecipe) -> list[Clip]:
     """The recipe's data, made from its seed.
 
@@ -200,6 +136,7 @@ def clips_of(folder: str | Path) -> list[Clip]:
     return [version for clip in clips for version in (clip, mirror(clip))]
 
 
+# ---- training ------------------------------------------------------------------------------------
 def train(
     recipe: WalkerRecipe,
     run_file: Path,
@@ -267,58 +204,28 @@ def prepared(recipe: WalkerRecipe, clips: list[Clip]) -> Prepared:
     schedule = SCHEDULES[recipe.schedule](config.S)
     dropout = dropout_of(recipe, schedule)
     torch.manual_seed(recipe.seed)
-    model = network(config, windows.pose_scaler, windows.control_scaler)
+    model = network(config)
     return Prepared(windows, schedule, model, loss_of(recipe, windows, schedule, dropout), dropout)
 
 
 def loss_of(
     recipe: WalkerRecipe, windows: Windows, schedule: Schedule, dropout: Dropout | None = None
 ) -> LossFn:
-    """The recipe's loss: its data, `modiff.training_loss`, and the departures that it names.
+    """Algorithm 1 of windows that are drawn: part of them hold their control, all pasts are noised.
 
-    A share of the windows, `recipe.held_control`, holds the control of the next step over the whole
-    future: interactive use does not know the future control.
+    Notebook: 07
     """
-    loss, change = weighted_loss(recipe.loss_weights, windows, schedule), typical_change(windows)
-    footholds = isinstance(recipe.config, FootholdConfig)
+    change = typical_change(windows)[0]
 
     def loss_fn(model: Any, generator: torch.Generator) -> Tensor:
-        device = next(model.parameters()).device
         past, x0, control = windows.draw(recipe.batch, generator)
         control = held_control(control, windows.T_h, recipe.held_control, generator)
-        noised = past
-        if recipe.past_noise:
-            noised = past_noise(past, recipe.past_noise, change[0], generator)
-        batch = tuple(part.to(device) for part in (past, noised, x0, control))
-        past, noised, x0, control = repeated(batch, recipe.noises)
-        if recipe.noises > 1:
-            model = SharedEncoding(model, recipe.noises)
-        if footholds:
-            model = CleanFootholds(model, past, noised, recipe.foot_noise)
-        batch = (noised, x0, control)
-        if dropout is None:
-            return training_loss(model, batch, schedule, generator, loss=loss)
-        light = NoisedPastWeight(dropout, recipe.noised_past_weight)
-        lighter = light.weighted(loss)
-        return training_loss(model, batch, schedule, generator, dropout=light, loss=lighter)
+        past = past_noise(past, recipe.past_noise, change, generator)
+        device = next(model.parameters()).device
+        batch = (past.to(device), x0.to(device), control.to(device))
+        return training_loss(model, batch, schedule, generator, dropout=dropout)
 
     return loss_fn
-
-
-def weighted_loss(weights: LossWeights, windows: Windows, schedule: Schedule) -> loss_terms.Loss:
-    """eq. 10's mean square, with the weights and terms that are not 0."""
-    std, loss = windows.pose_scaler.std, squared_error
-    if weights.metres:
-        loss = loss_terms.weighted(loss, loss_terms.metre_weights(std, weights.metres))
-    if weights.bones:
-        loss = loss_terms.total(loss, loss_terms.bones(weights.bones, std))
-    if weights.near:
-        change = typical_change(windows) * std
-        loss = loss_terms.weighted(loss, loss_terms.near_weights(change, weights.near))
-    if weights.high_noise:
-        steps = loss_terms.high_noise_weights(schedule, weights.high_noise)
-        loss = loss_terms.weighted_by_step(loss, steps)
-    return loss
 
 
 def dropout_of(recipe: WalkerRecipe, schedule: Schedule) -> Dropout | None:

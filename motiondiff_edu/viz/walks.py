@@ -1,22 +1,19 @@
-"""Plots of measured walks, of diffusion dropout, and of recipes beside one another.
+"""Plots of measured walks and of diffusion dropout.
 
 Footstep curves, drift over time, planted feet, tables of scores; curves side by side, a linear
-walker's weights, noise of the past; a row per recipe, a panel per measure, a dot per training run.
-Notebook: 08, 09
+walker's weights, noise of the past.
+Notebook: 07, 08, 09
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from textwrap import wrap
 
 import numpy as np
 from jaxtyping import Bool, Float
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter
 
 from ..metrics.walks import PLANTED_BELOW, runs
-from .body import GREY, INK, LEFT_COLOUR, RIGHT_COLOUR
+from .body import INK, LEFT_COLOUR, RIGHT_COLOUR
 from .style import DASHES, MARKERS, MEDIUM, OKABE_ITO, SMALL, figure, legend, table
 
 
@@ -93,25 +90,21 @@ def toe_heights(
     return fig
 
 
-def gates(
-    gate: Float[np.ndarray, "T 2"],
-    planted: Bool[np.ndarray, "T 2"],
-    words: str,
-    fps: float | int = 20,
+def treads(
+    walks: Mapping[str, Float[np.ndarray, "_ 2"]], words: str, fps: float | int = 20
 ) -> Figure:
-    """How far the gates of the two feet are open (0 to 1), left above right.
+    """How far along its way each toe has come (metres), a panel for each walk.
 
-    The background is grey while that foot is planted in the data.
+    A toe that stands makes a flat tread, one that slides a sloping one.
     """
-    fig, axes = figure(9, 3.8, words, rows=2, share="xy")
-    seconds = np.arange(len(gate)) / fps
-    for side, (axis, label, colour) in enumerate(
-        zip(axes, ("gate, left toe", "gate, right toe"), (LEFT_COLOUR, RIGHT_COLOUR), strict=True)
-    ):
-        _shade(axis, planted[:, side], fps)
-        axis.plot(seconds, gate[:, side], color=colour)
-        axis.set(ylabel=label, ylim=(-0.05, 1.05), yticks=(0, 0.5, 1))
-    axes[-1].set_xlabel("time (s)")
+    fig, axes = figure(3.4 * len(walks), 3.8, words, 1, len(walks), share="xy")
+    for axis, (label, toes) in zip(axes, walks.items(), strict=True):
+        seconds = np.arange(len(toes)) / fps
+        axis.plot(seconds, toes[:, 0], "-", color=LEFT_COLOUR, label="left toe")
+        axis.plot(seconds, toes[:, 1], "--", color=RIGHT_COLOUR, label="right toe")
+        axis.set(xlabel="time (s)", title=label)
+    axes[0].set_ylabel("along the way (m)")
+    legend(axes[0])
     return fig
 
 
@@ -241,60 +234,3 @@ def noise_pairs(
     handles, names = axes[0].get_legend_handles_labels()
     fig.legend(handles, names, loc="outside upper center", ncols=2, frameon=False, fontsize=SMALL)
     return fig
-
-
-# ---- recipes -------------------------------------------------------------------------------------
-WIDE = 5
-
-
-@dataclass(frozen=True)
-class Rung:
-    """A row: its label, its group, and for each measure a value for each training seed.
-
-    None stands for a training that gave no number.
-    """
-
-    words: str
-    group: str
-    values: Mapping[str, Sequence[float | None]]
-
-
-def ladder(rungs: Sequence[Rung], measures: Sequence[str], words: str) -> Figure:
-    """Dots of all seeds; groups differ in colour and marker.
-
-    An axis is logarithmic where its values differ by more than a factor of WIDE.
-    A line marks the mean of the group's first row. The other rows of the group differ from that row
-    in one choice. Values that are not positive or not finite are left out.
-    """
-    groups = list(dict.fromkeys(rung.group for rung in rungs))
-    panels = len(measures)
-    fig, axes = figure(5 + 3.2 * panels, 1.6 + 0.34 * len(rungs), words, 1, panels, share="y")
-    for axis, measure in zip(axes, measures, strict=True):
-        for row, rung in enumerate(rungs):
-            k = groups.index(rung.group)
-            seen = _drawn(rung, measure)
-            axis.plot(
-                seen, [row] * len(seen), MARKERS[k % 8], color=OKABE_ITO[k % 7], ms=7, alpha=0.8
-            )
-        for k, group in enumerate(groups):
-            rows = [row for row, rung in enumerate(rungs) if rung.group == group]
-            first = _drawn(rungs[rows[0]], measure)
-            if first:
-                mean = sum(first) / len(first)
-                axis.plot([mean, mean], [rows[0], rows[-1]], "--", color=OKABE_ITO[k % 7], lw=1.2)
-            if k:
-                axis.axhline(rows[0] - 0.5, color=GREY, lw=0.8)
-        axis.set_title("\n".join(wrap(measure, 28)))
-        drawn = [x for rung in rungs for x in _drawn(rung, measure)]
-        if drawn and max(drawn) > WIDE * min(drawn):
-            axis.set_xscale("log")
-            axis.xaxis.set_major_formatter(lambda x, _: f"{x:g}")
-            axis.xaxis.set_minor_formatter(NullFormatter())
-        axis.set_yticks(range(len(rungs)), [rung.words for rung in rungs])
-    axes[0].invert_yaxis()
-    return fig
-
-
-def _drawn(rung: Rung, measure: str) -> list[float]:
-    """The values that can be drawn, also on a logarithmic axis."""
-    return [x for x in rung.values.get(measure, ()) if x is not None and 0 < x < float("inf")]

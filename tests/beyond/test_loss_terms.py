@@ -6,12 +6,9 @@ import torch
 
 from motiondiff_edu.beyond.loss_terms import (
     as_x0_errors,
-    bone_errors,
-    bones,
     changes,
     high_noise_weights,
     metre_weights,
-    near_weights,
     toe_changes,
     total,
     weighted,
@@ -19,7 +16,7 @@ from motiondiff_edu.beyond.loss_terms import (
 )
 from motiondiff_edu.ddpm import linear_schedule, q_sample, squared_error
 from motiondiff_edu.motion import dance_frame
-from motiondiff_edu.motion.skeleton import HIPS, TOES, joint_index
+from motiondiff_edu.motion.skeleton import HIPS, TOES
 from motiondiff_edu.prediction import v_from_x0_eps, x0_from_v
 
 S1 = torch.tensor([1])
@@ -59,20 +56,6 @@ def test_columns_are_weighted_by_how_far_they_move(power):
     assert weights.mean().item() == pytest.approx(1)
 
 
-def test_frames_are_weighted_by_how_little_has_moved_till_then():
-    change = torch.tensor([[1.0, 7.0], [2.0, 14.0], [3.0, 21.0]])
-    for power in (0.5, 1.0):
-        weights = near_weights(change, power)
-        assert (weights[0] / weights[2]).item() == pytest.approx(3**power)
-        assert (weights[0] / weights[1]).item() == pytest.approx(2**power)
-        assert weights.mean().item() == pytest.approx(1)
-
-
-def test_frames_of_data_that_stand_still_have_no_weights():
-    with pytest.raises(ValueError, match="nothing moves"):
-        near_weights(torch.tensor([[0.0, 0.0], [1.0, 2.0]]))
-
-
 def test_steps_are_weighted_by_their_noise():
     """beta 0.2, 0.35, 0.5, 0.65 ... leave 0.8, 0.52, 0.26, 0.091 of the signal; noise / signal is
     capped at 3."""
@@ -91,34 +74,11 @@ def test_errors_of_v_count_as_those_of_x0():
     torch.testing.assert_close(loss, off.square().mean())
 
 
-def test_bone_errors_by_hand():
-    """All joints off by the same: no bone errs. The left hand's tip alone off by 3 cm: its bone
-    errs, no other."""
-    error = torch.zeros(1, 2, 63)
-    error[:, 0] = 0.2
-    error[0, 1, 3 * 16 + 1] = 0.03
-    found = bone_errors(error)
-    assert not found[0, 0].any()
-    assert found[0, 1, 15] == pytest.approx(0.03**2 / 3) and found[0, 1].count_nonzero() == 1
-
-
-def test_bones_are_in_metres_over_the_mean_variance():
-    std = torch.linspace(0.1, 0.9, 63)
-    column = 3 * joint_index("LeftHandIndex1") + 2
-    error = one_error(1, column, 2.0)  # 2 std of the tip of the left hand, which is one bone
-    wanted = 5 * (2 * std[column]) ** 2 / 3 / (3 * 20) / std.square().mean()
-    assert bones(5.0, std)(error, S1).item() == pytest.approx(wanted.item())
-    assert bones(5.0, std)(torch.ones(1, 3, 63) / std, S1).item() == pytest.approx(0, abs=1e-9)
-
-
 def test_weights_that_suit_a_difference_leave_out_what_both_ends_share():
-    """Frames for bones, columns for changes; the other way round, what is shared counts."""
-    std = torch.linspace(0.1, 0.9, 63)
-    frames, columns = torch.tensor([[1.0], [4.0], [9.0]]), metre_weights(std)
-    shift, steady = torch.ones(1, 3, 63) / std, torch.rand(1, 1, 63).expand(1, 3, 63)
-    assert weighted(bones(1.0, std), frames)(shift, S1).item() == pytest.approx(0, abs=1e-9)
+    """Columns for changes; with frames, what is shared counts."""
+    columns = metre_weights(torch.linspace(0.1, 0.9, 63))
+    frames, steady = torch.tensor([[1.0], [4.0], [9.0]]), torch.rand(1, 1, 63).expand(1, 3, 63)
     assert weighted(changes(1.0), columns)(steady, S1).item() == pytest.approx(0, abs=1e-9)
-    assert weighted(bones(1.0, std), columns)(shift, S1) > 0.01
     assert weighted(changes(1.0), frames)(steady, S1) > 0.01
 
 
@@ -145,6 +105,6 @@ def test_toes_err_in_the_world_where_pelvis_and_leg_do_not_err_alike():
 
 
 def test_weights_follow_the_errors_device_and_kind():
-    loss = weighted(total(squared_error, bones(1.0, torch.ones(63))), metre_weights(torch.ones(63)))
+    loss = weighted(total(squared_error, changes(1.0)), metre_weights(torch.ones(63)))
     assert loss(torch.ones(1, 3, 63, dtype=torch.float64), S1).dtype == torch.float64
     assert np.isfinite(loss(one_error(), S1).item())

@@ -14,18 +14,11 @@ import pytest
 import torch
 
 from motiondiff_edu import rollout
-from motiondiff_edu.beyond.footholds import FootholdMoDiff
 
 
 def standing_still(walker, past, control, **options) -> torch.Tensor:
-    """Instead of `rollout.generate`: the last pose again and again.
-
-    Who listens to the gate hears ten calls a frame.
-    """
+    """Instead of `rollout.generate`: the last pose again and again."""
     frames = control.shape[-2] - past.shape[-2]
-    if isinstance(getattr(walker, "model", None), FootholdMoDiff):
-        for _ in range(10 * frames):
-            walker.model.gate(torch.zeros(1, walker.config.T_p, walker.config.width))
     return past[..., -1:, :].repeat_interleave(frames, dim=-2)
 
 

@@ -43,10 +43,10 @@ def test_the_paper_and_the_shipped_walker_are_as_the_recipes_are(table):
     assert said["noise schedule"] == ("unspecified", f"*{WALKER.schedule}*")  # by MoDiff
     assert said["steps"][1] == f"{WALKER_TRUNK.steps:,}, then {WALKER.steps:,}"
     assert said["windows a step"] == (str(WALKER_PAPER.batch), str(WALKER.batch))
-    assert f"noise, {WALKER.past_noise:g};" in said["past"][1]
-    assert said["past"][1].endswith(f"weight {WALKER.noised_past_weight:g}")
+    assert said["past"][1] == f"noise, {WALKER.past_noise:g}; diffusion dropout at the end"
+    assert said["predicts"][1] == "eps, with the skip" and WALKER.config.skip
     assert WALKER.dropout == P_D and not WALKER_PLAIN.dropout and not WALKER_TRUNK.dropout
-    assert WALKER.loss_weights.metres == 2 and WALKER.loss_weights.near > 0
+    assert WALKER.config.target == "eps"
 
 
 def test_what_is_trained_in_the_notebook_is_as_its_cells_are(table, notebook):

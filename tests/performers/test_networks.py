@@ -8,7 +8,6 @@ import torch
 from torch import nn
 
 from motiondiff_edu.baselines.transformer import DanceTransformer, TransformerConfig
-from motiondiff_edu.beyond.footholds import COLUMNS, FootholdConfig, FootholdMoDiff
 from motiondiff_edu.ddpm import cosine_schedule, linear_schedule
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
@@ -80,7 +79,7 @@ def test_a_network_of_ones_own_walks_is_saved_and_loaded(registry, tmp_path: Pat
     back = load(save(mine, tmp_path / "mine.safetensors", bits=32))
     assert type(back.model) is LinearWalker and back.config == LinearConfig()
     assert torch.equal(walked(back), walked(mine))
-    assert type(network(LinearConfig(), POSE, CONTROL)) is LinearWalker
+    assert type(network(LinearConfig())) is LinearWalker
 
 
 def test_without_registering_it_is_neither_saved_nor_loaded(registry, tmp_path: Path):
@@ -104,20 +103,18 @@ def test_a_dancers_network_is_no_walkers(registry, tmp_path: Path):
 
 
 def test_ours_are_registered():
-    assert list(networks_of("walker")) == ["MoDiff", "FootholdMoDiff"]
+    assert list(networks_of("walker")) == ["MoDiff"]
     dancers = {"MoFusion", "DanceTransformer"}
     assert set(networks_of("dancer")) == dancers | {"HearingMoFusion", "HearingTransformer"}
     assert list(networks_of("inbetweener")) == ["KeyframeMoFusion"]
     sizes = {"T_h": T_H, "T_p": T_P, "S": S, "width": 16, "heads": 2, "hidden": 24}
     built = {
-        MoDiff: network(MoDiffConfig(**sizes), POSE, CONTROL),
-        FootholdMoDiff: network(FootholdConfig(**sizes), POSE, CONTROL),
+        MoDiff: network(MoDiffConfig(**sizes)),
         MoFusion: network(MoFusionConfig(C=5, widths=(16, 24), heads=2, music_layers=1)),
         DanceTransformer: network(TransformerConfig(C=5, width=16, heads=2, layers=1)),
     }
     for kind, one in built.items():
         assert type(one) is kind and kind_of(one).model is kind
-    assert built[FootholdMoDiff].pose_mean[2] == POSE.mean[COLUMNS[2]]
 
 
 @dataclass(frozen=True)

@@ -92,7 +92,7 @@ def test_whole_numbers_come_back_exactly(tmp_path: Path, monkeypatch, bits: int)
             self.register_buffer("order", torch.arange(100_000, 100_000 + 5000))
 
     there = checkpoints.networks_of("walker")
-    kind = replace(there["MoDiff"], model=Counting, build=lambda config, *scalers: Counting(config))
+    kind = replace(there["MoDiff"], model=Counting)
     monkeypatch.setattr(checkpoints, "networks_of", lambda name: there | {"Counting": kind})
     monkeypatch.setattr(checkpoints, "kind_of", lambda model: kind)
     walker = tiny_walker()
@@ -403,13 +403,13 @@ def test_a_network_that_computes_with_its_numbers_comes_back(saved: Path, monkey
     """Such a network cannot be outlined without its numbers."""
     made = []
 
-    def build(config, *scalers):
+    def build(config):
         model = MoDiff(config)
         made.append(next(model.parameters()).sum().item())
         return model
 
     there = checkpoints.networks_of("walker")
-    changed = there | {"MoDiff": replace(there["MoDiff"], build=build)}
+    changed = there | {"MoDiff": replace(there["MoDiff"], model=build)}
     monkeypatch.setattr(checkpoints, "networks_of", lambda name: changed)
     assert load_walker(saved).config.width == 16 and len(made) == 1
 

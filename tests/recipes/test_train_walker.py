@@ -9,20 +9,18 @@ from pathlib import Path
 
 import pytest
 import torch
+from budget import BUDGET, train_for
 
-from motiondiff_edu.beyond.footholds import FootholdConfig
 from motiondiff_edu.diffusion_dropout import P_D, Dropout
 from motiondiff_edu.modiff import MODIFF_SMALL, MoDiff
 from motiondiff_edu.pretrained.checkpoints import load_walker, save
 from motiondiff_edu.recipes import __main__ as command
 from motiondiff_edu.recipes import walker as train_module
-from motiondiff_edu.recipes.budget import BUDGET, train_for
 from motiondiff_edu.recipes.training import commit_of, notes_of
 from motiondiff_edu.recipes.walker import (
     RECIPES,
     SHIPPED,
     WALKER_TRUNK,
-    LossWeights,
     WalkerRecipe,
     train,
     training_clips,
@@ -56,8 +54,7 @@ def test_a_recipe_becomes_a_walker_with_its_card(tmp_path: Path):
     assert card["parameters"] == sum(p.numel() for p in walker.model.parameters())
 
 
-FEET = FootholdConfig(width=16, heads=2, hidden=24, T_p=5)
-LIKE_SHIPPED = replace(WALKER_TRUNK, config=FEET, steps=8, batch=3, clips=2, seconds=2.0)
+LIKE_SHIPPED = replace(WALKER_TRUNK, config=TINY, steps=8, batch=3, clips=2, seconds=2.0)
 
 
 class Killed(Exception):
@@ -79,7 +76,7 @@ def kill_at(step: int, monkeypatch):
 
 @pytest.mark.parametrize("step", [4, 7])
 def test_a_killed_training_goes_on_where_it_was_saved(tmp_path: Path, monkeypatch, step: int):
-    """What is shipped, in small: footholds, the leap, Muon."""
+    """What is shipped, in small: past noise, the leap, Muon."""
     whole = train(LIKE_SHIPPED, tmp_path / "whole", log=quiet)
     with monkeypatch.context() as patch:
         kill_at(step, patch)
@@ -148,7 +145,7 @@ def test_a_recipe_that_begins_with_another_continues_its_network(tmp_path: Path)
 def test_walker_and_its_plain_twin_differ_in_dropout_alone():
     walker, plain = RECIPES["walker"], RECIPES["walker-plain"]
     assert walker.dropout == P_D and walker.dropout_start == 0 and not plain.dropout
-    fields = ("name", "dropout", "dropout_start", "noised_past_weight")
+    fields = ("name", "dropout", "dropout_start")
     alike = replace(walker, **{name: getattr(plain, name) for name in fields})
     assert alike == plain and RECIPES[plain.begins_with].dropout == ()
 
@@ -165,7 +162,7 @@ def test_a_run_is_continued_with_its_own_settings_and_data_or_not_at_all(tmp_pat
     walker = train(SHORT, tmp_path / "run", log=quiet)
     again = train(SHORT, tmp_path / "run", log=quiet)  # nothing is left to do
     assert again.card == walker.card
-    with pytest.raises(ValueError, match="begun with lr = 0.002, not 0.1"):
+    with pytest.raises(ValueError, match="begun with lr = 0.004, not 0.1"):
         train(replace(SHORT, lr=0.1), tmp_path / "run", log=quiet)
     with pytest.raises(ValueError, match="begun with data = "):
         train(SHORT, tmp_path / "run", clips=training_clips(replace(SHORT, data_seed=2)), log=quiet)
@@ -211,14 +208,14 @@ def test_dropout_rises_with_the_seconds_of_a_budget(monkeypatch):
 
 def test_what_is_shipped_has_a_recipe_and_the_papers_one_is_the_papers():
     pairs = [f"mend-{kind}-{k}" for k in range(3) for kind in ("plain", "dropout")]
-    walkers = ["walker", "walker-plain", "walker-printed", "walker-eps"]
+    walkers = ["walker", "walker-plain", "walker-printed"]
     assert [recipe.name for recipe in SHIPPED] == [*walkers, *pairs]
     assert all(RECIPES[name].dropout == (P_D if "dropout" in name else ()) for name in pairs)
     paper = RECIPES["walker-paper"]
     assert (paper.optimizer, paper.lr, paper.batch, paper.config.width) == ("adam", 5e-5, 64, 256)
-    assert paper.past_noise == 0 and paper.noises == 1 and paper.loss_weights == LossWeights()
-    assert paper.schedule == "linear" and paper.config.target == "eps"
-    assert paper.dropout == P_D and not paper.config.skip and paper.held_control == 0
+    assert paper.past_noise == 0 and paper.schedule == "linear"
+    assert paper.config.target == "eps" and not paper.config.skip
+    assert paper.dropout == P_D and paper.held_control == 0
     same = replace(paper, name="walker-printed", config=RECIPES["walker-printed"].config)
     assert replace(same, steps=12_000, clips=720) == RECIPES["walker-printed"]
 

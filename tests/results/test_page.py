@@ -92,16 +92,6 @@ def test_links_to_headings_of_the_pages_lead_there(root):
     assert [link for link in links if link[1] not in there[link[0] or "RESULTS.md"]] == []
 
 
-def test_all_rungs_of_the_ladder_have_the_size_in_the_head_of_their_table(found):
-    sizes = {
-        one["seeds"]["network"]
-        for name, one in found.items()
-        if re.fullmatch(r"ladder\..*\.bone_rmse_cm", name)
-    }
-    assert sizes == {found["ladder.printed.bone_rmse_cm"]["seeds"]["network"]}
-    assert "recipe ({{about ladder.printed.bone_rmse_cm network}})" in TEMPLATE
-
-
 def test_places_rows_and_columns():
     one = record("a.x", 0.1, 0.3, clips=7, rate=5e-05) | {"unit": "cm"}
     other = record("b.x", 2, 2) | {"unit": "cm"}

@@ -137,16 +137,17 @@ def test_a_departure_is_unproven_without_a_difference_that_is_not_0():
         return {"name": name, "low": low, "high": high}
 
     records = [
-        record("ladder.a.bones_minus_base_cm", -1, 2),
-        record("ladder.a.feet_minus_base_mps", 0.1, 0.2),
-        record("ladder.b.bones_minus_base_cm", -1, 2),
-        record("ladder.c.bones_cm", -1, 2),
+        record("sweep.a.bones_minus_base_cm", -1, 2),
+        record("sweep.a.feet_minus_base_mps", 0.1, 0.2),
+        record("sweep.b.bones_minus_base_cm", -1, 2),
+        record("sweep.c.bones_cm", -1, 2),
     ]
     texts = {
-        "gains": "Gain: `ladder.a.*`",
-        "nothing": "Gain: `ladder.b.*` and `ladder.c.*`",
-        "other": "Gain: `ladder.c.*`",
-        "later": "Gain: not measured yet; it will be `ladder.a.*`",
+        "gains": "Gain: `sweep.a.*`",
+        "nothing": "Gain: `sweep.b.*` and `sweep.c.*`",
+        "other": "Gain: `sweep.c.*`",
+        "held_control": "Beside it: `sweep.b.*`",
+        "later": "Gain: not measured yet; it will be `sweep.a.*`",
     }
     assert list(unproven(texts, records)) == ["nothing", "later"]
 

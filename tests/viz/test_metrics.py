@@ -3,6 +3,7 @@
 import numpy as np
 
 from motiondiff_edu.viz import walks as viz
+from motiondiff_edu.viz.body import LEFT_COLOUR
 from motiondiff_edu.viz.style import caption
 
 
@@ -56,17 +57,15 @@ def test_planted_steps_are_grey_for_as_long_as_they_last():
     np.testing.assert_allclose(fig.axes[0].lines[1].get_ydata(), 100 * height[:, 1])
 
 
-def test_gates_stand_on_the_contacts_of_their_own_foot():
-    gate = np.linspace(0, 1, 12).reshape(6, 2)
-    planted = np.array([[1, 1, 0, 0, 0, 0], [0, 0, 0, 1, 1, 0]], dtype=bool).T
-    fig = viz.gates(gate, planted, "words", fps=10)
-    for side, (begin, end) in enumerate(((0, 0.2), (0.3, 0.5))):
-        axis = fig.axes[side]
-        spans = [
-            patch.get_extents().transformed(axis.transData.inverted()) for patch in axis.patches
-        ]
-        np.testing.assert_allclose([[s.x0, s.x1] for s in spans], [[begin, end]], atol=1e-9)
-        np.testing.assert_allclose(axis.lines[0].get_ydata(), gate[:, side])
+def test_treads_are_of_both_toes_a_panel_for_each_walk():
+    toes = np.arange(12.0).reshape(6, 2)
+    fig = viz.treads({"one": toes, "other": 2 * toes[:4]}, "words", fps=10)
+    one, other = fig.axes
+    assert (one.get_title(), other.get_title()) == ("one", "other")
+    for side in (0, 1):
+        np.testing.assert_allclose(one.lines[side].get_xdata(), [0, 0.1, 0.2, 0.3, 0.4, 0.5])
+        np.testing.assert_allclose(other.lines[side].get_ydata(), 2 * toes[:4, side])
+    assert one.get_ylim() == other.get_ylim() and one.lines[0].get_color() == LEFT_COLOUR
 
 
 def test_a_table_says_none_where_there_is_no_figure_and_nought_for_rounding():

@@ -3,12 +3,13 @@
     python -m tools.results [--only PART ...] [--full] [--quick] [--weights NAME=FILE] [--render]
 
 Without --only, all parts are measured for which there are shipped weights; a name that is not known
-lists all parts. --full adds the sweeps that train, for minutes or hours a variant: ladder (from the
-paper's walker to ours), dance-budget, words-budget and mend-map. One variant of a sweep is a part
-as well: ladder.ours, dance-budget.v. Otherwise their records stay as they are. A training that was
-killed continues. By name alone are measured: what needs recordings, with MOTIONDIFF_REAL_DATA
-(recordings, recordings-inbetweens, recordings-reconstructions, real-music, inbetween-budget), and
-course-shown (pages and demos, after `make pages`). --quick measures little, into build/quick, and
+lists all parts. --full adds the sweeps that train, for minutes or hours a variant:
+walker-departures (from MoDiff to our walker), dance-budget, words-budget and mend-map. One variant
+of a sweep is a part as well: walker-departures.leap, dance-budget.v. Otherwise their records stay
+as they are. A training that was killed continues. By name alone are measured: what needs
+recordings, with MOTIONDIFF_REAL_DATA (recordings, recordings-inbetweens,
+recordings-reconstructions, real-music, inbetween-budget), and course-shown (pages and demos, after
+`make pages`). --quick measures little, into build/quick, and
 is for trying the code. --render only writes the pages from the existing records.
 """
 
@@ -45,7 +46,6 @@ from .repairs import both, dropout, mend, repair
 from .repairs.trials import names_of
 from .sweep import Sweep, Variant, run
 from .walks import departures as walker_departures
-from .walks import ladder
 from .walks.parts import FULL, LINES, QUICK, Bench, Walks, footstep_records, walker_records
 from .walks.parts import weights_digest as digest
 from .words import budget as word_budget
@@ -179,13 +179,10 @@ SWEEPS = {
         lambda c, runs: departures.sweep({name: c.performer(name) for name in (SHOWN, MASKED)},
                                          c.of(inbetween.FULL, inbetween.QUICK)),
         weights=frozenset({SHOWN, MASKED})),
-    "ladder": Trained(
-        ladder.VARIANTS, lambda c, runs: ladder.sweep(c.of(ladder.FULL, ladder.QUICK), runs)),
     "walker-departures": Trained(
         walker_departures.VARIANTS,
         lambda c, runs: walker_departures.sweep(
-            c.of(walker_departures.FULL, walker_departures.QUICK), runs),
-        by_name=True),
+            c.of(walker_departures.FULL, walker_departures.QUICK), runs)),
     "dance-budget": Trained(
         dance_budget.VARIANTS,
         lambda c, runs: dance_budget.sweep(c.of(dance_budget.FULL, dance_budget.QUICK), runs)),
@@ -263,7 +260,7 @@ def parts_of(only: list[str], full: bool, lines: Mapping[str, Walks], weights: s
     if unknown:
         sys.exit(
             f"no part is called {', '.join(unknown)}; there are: {', '.join([*names, *rows])}; "
-            "variants of the last: ladder.ours, dance-budget.v ..."
+            "variants of the last: walker-departures.leap, dance-budget.v ..."
         )
     return parts
 

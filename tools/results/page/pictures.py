@@ -6,17 +6,8 @@ import numpy as np
 
 from motiondiff_edu._files import replacing
 from motiondiff_edu.viz.repairs import by_fault, over_gaps, rate_map
-from motiondiff_edu.viz.walks import Rung, ladder
-
-from ..walks.ladder import VARIANTS as RUNGS
 
 SIDES = ("value", "low", "high")
-RUNG_MEASURES = {
-    "bone error, cm": "bone_rmse_cm",
-    "control error above the data's, m/s": "adherence_excess_mps",
-    "sliding, m/s": "skating_mps",
-    "bone error after a past with holes, over a whole one": "broken_over_whole",
-}
 GAPS = (5, 15, 30, 60)
 OVER_GAPS = {  # panel: {words: end of the record's name}
     "error, cm": {
@@ -49,7 +40,6 @@ MISSING = (0, 15, 30, 50, 70, 100)  # per cent of the joints
 def draw(records: dict[str, dict], folder: Path) -> None:
     """Write each picture whose records are there."""
     for name, make in (
-        ("ladder", the_ladder),
         ("dropout-map", dropout_map),
         ("repairs", repairs),
         ("inbetween", in_betweens),
@@ -60,28 +50,6 @@ def draw(records: dict[str, dict], folder: Path) -> None:
             continue
         with replacing(folder / f"{name}.png") as aside:
             figure.savefig(aside, dpi=110, format="png")
-
-
-def the_ladder(records: dict[str, dict]):
-    """A row for each rung that was trained, a dot for each training seed."""
-    rungs = []
-    for name, variant in RUNGS.items():
-        values = {
-            words: [records[n]["value"] for k in range(3)
-                    if (n := f"ladder.{name}.{kind}.seed{k}") in records]
-            for words, kind in RUNG_MEASURES.items()
-        }  # fmt: skip
-        if any(values.values()):
-            ours = name.startswith("ours")
-            group = "our recipe, one choice out" if ours else "the printed recipe, one choice in"
-            rungs.append(Rung(variant.words, group, values))
-    if not rungs:
-        raise KeyError("ladder")
-    words = (
-        "Every recipe of the ladder, a dot for each training seed. The dashed lines are the means "
-        "of the two whole recipes. Smaller is better everywhere; wide axes are logarithmic."
-    )
-    return ladder(rungs, list(RUNG_MEASURES), words)
 
 
 def dropout_map(records: dict[str, dict]):

@@ -11,7 +11,7 @@ Source: MoDiff III-D, IV-A, Alg. 1.  Notebook: 07
 """
 
 import json
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
@@ -20,7 +20,6 @@ import torch
 from jaxtyping import Float
 
 from data_synth.walking import dataset
-from motiondiff_edu.beyond.footholds import FootholdConfig
 from motiondiff_edu.diffusion_dropout import P_D
 from motiondiff_edu.metrics.distributions import spread
 from motiondiff_edu.metrics.walks import ROBUST, adherence, footsteps, heel_speed, skating
@@ -29,7 +28,7 @@ from motiondiff_edu.motion.cleanup import clean_up
 from motiondiff_edu.motion.root_frame import root_path, to_root_frame, to_world
 from motiondiff_edu.motion.skeleton import TOES, J
 from motiondiff_edu.performers.walker import STEPS, Walker
-from motiondiff_edu.recipes.walker import LossWeights, WalkerRecipe, train, training_clips
+from motiondiff_edu.recipes.walker import WalkerRecipe, train, training_clips
 
 from ..repairs.trials import SHARE, continued
 from ..sweep import Rows, Sweep, Variant, minus
@@ -48,8 +47,10 @@ from .scores import (
 from .trials import T_H, UNSEEN, Choices, Trials, choices, rollouts_of, walker_generate
 
 PLAN = Path(__file__).parents[3] / "docs" / "results" / "walker-departures" / "plan.json"
-X0 = replace(MODIFF_SMALL, target="x0", skip=False)
-BASE = WalkerRecipe("base", MODIFF_SMALL, steps=8_000, dropout=P_D)
+BASE = WalkerRecipe(
+    "base", MODIFF_SMALL, steps=8_000, optimizer="adam", schedule="linear", past_noise=0.0,
+    dropout=P_D,
+)  # fmt: skip
 
 
 def added(words: str, to: str = "base", **changes) -> Variant:
@@ -63,24 +64,15 @@ VARIANTS |= {
     "leap": added("leap schedule", schedule="leap"),
     "muon": added("Muon", optimizer="muon"),
 }
-VARIANTS |= {
-    "muon-metres": added("errors in metres", "muon", loss_weights=LossWeights(metres=2.0)),
-    "muon-leap": added("leap schedule", "muon", schedule="leap"),
-}
+VARIANTS |= {"muon-leap": added("leap schedule", "muon", schedule="leap")}
 VARIANTS |= {
     "past-noise": added("past noise instead of dropout", "muon-leap", past_noise=0.3, dropout=()),
     "no-dropout": added("no diffusion dropout", "muon-leap", dropout=()),
 }
 VARIANTS |= {
     "both": added("diffusion dropout as well", "past-noise", dropout=P_D),
-    "near": added("near frames count more", "past-noise", loss_weights=LossWeights(near=1.0)),
-    "bones": added("errors of bones", "past-noise", loss_weights=LossWeights(bones=2.0)),
-    "high-noise": added(
-        "high noise counts more", "past-noise", loss_weights=LossWeights(high_noise=3.0)
-    ),
-    "two-noises": added("two noises for each window", "past-noise", noises=2),
-    "x0": added("x0 instead of eps", "past-noise", config=X0),
-    "footholds": added("x0 with footholds", "past-noise", config=FootholdConfig(**asdict(X0))),
+    "never-held": added("control never held", "past-noise", held_control=0.0),
+    "one-pose": added("one future pose", "past-noise", config=replace(MODIFF_SMALL, T_p=1)),
 }
 
 

@@ -29,12 +29,10 @@ ROLLING = (
     "modiff.py",
     "prediction.py",
     "rollout.py",
-    "beyond/footholds.py",
     "motion/scaler.py",
     "performers/performer.py",
     "performers/walker.py",
     "pretrained/checkpoints.py",
-    "pretrained/weights_file.py",
     "pretrained/weights_file.py",
 )
 
@@ -147,10 +145,8 @@ LINES = {
         Walks("walker", "walker"),
         Walks("walker-plain", "walker-plain", choose=False),
         Walks("walker-printed", "walker-printed", choose=False),
-        Walks("walker-eps", "walker-eps"),
         Walks("walker-ddim10", "walker", steps=10),
         Walks("walker-lookahead", "walker", hold=False, choose=False),
-        Walks("walker-eps-lookahead", "walker-eps", hold=False, choose=False),
     )
 }
 

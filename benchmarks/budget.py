@@ -5,11 +5,11 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 
-from ..motion.clip import Clip
-from ..performers.walker import Walker
-from ..training import TrainState, train_steps
-from .muon import optimizer_for
-from .walker import WALKER_TRUNK, WalkerRecipe, prepared
+from motiondiff_edu.motion.clip import Clip
+from motiondiff_edu.performers.walker import Walker
+from motiondiff_edu.recipes.muon import optimizer_for
+from motiondiff_edu.recipes.walker import WALKER_TRUNK, WalkerRecipe, prepared
+from motiondiff_edu.training import TrainState, train_steps
 
 WARM_UP = 100  # steps
 BUDGET = replace(WALKER_TRUNK, name="budget", batch=32, lr=3e-3, decay=0.99)
