@@ -29,6 +29,7 @@ from .songs import UNSEEN
 
 PLAN = Path(__file__).parents[3] / "docs" / "results" / "dancer-departures" / "plan.json"
 LINEAR_MUSIC = replace(MOFUSION_SMALL, music_layers=0)
+X0 = {"target": "x0", "skip": False}
 BASE = SongRecipe(
     "base", LINEAR_MUSIC, steps=2_000, kinematic=KINEMATIC, optimizer="adam", ear=None
 )
@@ -41,31 +42,28 @@ def added(words: str, to: str = "base", **changes) -> Variant:
 
 
 VARIANTS: dict[str, Variant] = {"base": Variant("MoFusion: eps with the skip, Adam", {})}
+VARIANTS |= {"muon": added("Muon", optimizer="muon")}
+VARIANTS |= {"x0": added("x0 instead of eps", "muon", config=replace(LINEAR_MUSIC, **X0))}
 VARIANTS |= {
-    "muon": added("Muon", optimizer="muon"),
-    "x0": added("x0 instead of eps", config=replace(LINEAR_MUSIC, target="x0", skip=False)),
+    "convolutions": added("convolutions over the Mel", "x0", config=replace(MOFUSION_SMALL, **X0))
 }
 VARIANTS |= {
-    "convolutions": added("convolutions over the Mel", "muon", config=MOFUSION_SMALL),
-    "muon-x0": added(
-        "x0 instead of eps", "muon", config=replace(LINEAR_MUSIC, target="x0", skip=False)
-    ),
-}
-VARIANTS |= {
-    "more-noise": added("a schedule with more noise", "muon-x0", snr=0.1),
-    "x0-convolutions": added(
-        "convolutions over the Mel", "muon-x0",
-        config=replace(MOFUSION_SMALL, target="x0", skip=False),
-    ),
-    "ear": added("an ear", "muon-x0", config=HEARING, ear=EAR),
     "changes": added(
-        "errors of changes", "muon-x0", loss_weights=DanceLossWeights(changes=5.0)
-    ),
-    "toes": added("errors of toes", "muon-x0", loss_weights=DanceLossWeights(toes=0.2)),
-    "gain-noise": added("music as from different loudspeakers", "muon-x0", gain_noise=0.3),
-    "guidable": added("music left out at times", "muon-x0", no_music=0.15),
-    "no-kinematics": added("no kinematic losses", "muon-x0", kinematic=None),
-}  # fmt: skip
+        "errors of changes", "convolutions", loss_weights=DanceLossWeights(changes=5.0)
+    )
+}
+VARIANTS |= {
+    "toes": added("errors of toes", "changes", loss_weights=DanceLossWeights(changes=5.0, toes=0.2))
+}
+VARIANTS |= {
+    "ear": added("an ear", "toes", config=HEARING, ear=EAR),
+    "more-noise": added("a schedule with more noise", "toes", snr=0.1),
+    "no-kinematics": added("no kinematic losses", "toes", kinematic=None),
+}
+VARIANTS |= {
+    "gain-noise": added("music as from different loudspeakers", "ear", gain_noise=0.3),
+    "guidable": added("music left out at times", "ear", no_music=0.15),
+}
 
 
 @dataclass(frozen=True)
