@@ -44,6 +44,12 @@ class KinematicWeights:
         """
         return sum(getattr(self, name) * loss for name, loss in parts.items())
 
+    def loss_of(
+        self, body: "Body", planted: Bool[Tensor, "B T 2"]
+    ) -> Callable[[Motion, Motion], Float[Tensor, "B"]]:
+        """L_k of these bodies, as `training_loss` takes it."""
+        return lambda x0_hat, x0: self.total(kinematic_parts(x0_hat, x0, body, planted))
+
 
 @dataclass(frozen=True, eq=False)
 class Body:

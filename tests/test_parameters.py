@@ -22,7 +22,6 @@ OPEN = {
     "widgets/controls.py steering": "the keywords are those of the function that is steered",
     "results/walks/departures.py added": "the keywords are fields of a recipe, as in `replace`",
     "results/dances/departures.py added": "as in walks/departures.py",
-    "results/dances/budget.py differs": "as `added`, of a DanceRecipe",
     "tools/mutants.py _with": "the keywords are fields of a node, as in `replace`",
 }
 

@@ -8,7 +8,7 @@ in noise, or without some of its bands, which a dance could not follow.
     place in the beat      0 on a beat, 1/2 between two; a network gives it as cosine and sine
     count                  beats since the first one, with the place behind the point
 
-Gain: not measured yet; it will be `dance-budget.ear.*` in docs/RESULTS.md.
+Gain: not measured yet; it will be `dancer-departures.ear.*` in docs/RESULTS.md.
 Ours; after beat trackers that are taught by scores (Böck and Schedl, 2011). The paper's network
 hears through its own loss alone.  Notebook: 12
 """

@@ -10,7 +10,7 @@ ends share counts as well, which is right only where the weights convert units
 
     loss = total(weighted(squared_error, metre_weights(std)), changes(5))
 
-Gain: docs/RESULTS_ALL.md (`dance-budget.poses.*`, `.no-feet.*`, `.eps-weighted.*`).
+Gain: docs/RESULTS_ALL.md (`dancer-departures.changes.*`, `dancer-departures.toes.*`).
 Ours; neither paper has them.
 Notebook: 12
 """
@@ -49,7 +49,7 @@ def weighted(
 
 
 def weighted_by_step(loss: Loss, weights: Table) -> Loss:
-    """A loss whose squares have weights by diffusion step (`high_noise_weights`)."""
+    """A loss whose squares have weights by diffusion step (`as_x0_errors`)."""
     roots = weights.sqrt()
     return lambda error, s: loss(at(roots, s, error) * error, s)
 
@@ -63,16 +63,6 @@ def metre_weights(std: Float[Tensor, "D"], power: float = 2.0) -> Float[Tensor, 
     """
     weights = std**power
     return weights / weights.mean()
-
-
-def high_noise_weights(schedule: Schedule, largest: float) -> Table:
-    """Weights of steps: 1 + min((1 - alpha_bar) / alpha_bar, largest).
-
-    For eps: at high noise eps is nearly x_s itself, so its error is small, but these steps decide
-    the pose.
-    """
-    noise_over_signal = (1 - schedule.alpha_bar) / schedule.alpha_bar
-    return 1 + noise_over_signal.clamp_max(largest)
 
 
 def as_x0_errors(schedule: Schedule) -> Table:

@@ -169,7 +169,7 @@ def trained(
     """
     if name in DANCE_RECIPES:
         recipe = DANCE_RECIPES[name]
-        own = ear if getattr(recipe, "ear", None) else None
+        own = ear if recipe.ear else None
         return train_dancer(recipe, run, log=say, ear=own, device=device)
     if name == INBETWEENER.name:
         return train_inbetweener(INBETWEENER, run, log=say, device=device)

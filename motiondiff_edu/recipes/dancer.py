@@ -6,7 +6,7 @@ Notebook: 13
 """
 
 from dataclasses import dataclass, replace
-from functools import lru_cache, partial
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -18,9 +18,10 @@ from .._files import digest_of_tensors
 from ..baselines.transformer import HearingTransformerConfig, regression_loss
 from ..beyond.classifier_free import without
 from ..beyond.gain_noise import gain_noise
+from ..beyond.loss_terms import toe_changes
 from ..beyond.schedules import shifted
 from ..ddpm import Schedule, cosine_schedule
-from ..kinematic_loss import KinematicWeights
+from ..kinematic_loss import KinematicWeights, training_loss, weight_by_step
 from ..metrics.bodies import bone_lengths
 from ..mofusion import MOFUSION_FULL, MOFUSION_SMALL
 from ..motion import dance_frame
@@ -30,7 +31,7 @@ from ..performers.hearing_mofusion import HearingConfig
 from ..performers.networks import Config, network
 from ..training import LossFn
 from .ear import EAR, EarRecipe, TrainedEar, ear_of
-from .mofusion_loss import KINEMATIC, OURS, DanceLossWeights, batch_loss, weighted_loss
+from .mofusion_loss import CHANGES, KINEMATIC, TOE_CHANGES, data_loss
 from .songs import songs_as_mel
 from .training import Provenance, Recipe, on_device, train_recipe
 
@@ -38,35 +39,28 @@ from .training import Provenance, Recipe, on_device, train_recipe
 # ---- recipes -------------------------------------------------------------------------------------
 @dataclass(frozen=True)
 class DanceRecipe(Recipe):
-    """One training run of a dancer; by default with the paper's loss.
+    """The sizes and rates of one training run of a dancer.
 
-    The data are `songs` songs of `seconds` each with `dances` dances each; every dance is also
-    mirrored.
+    The data are `songs` songs of `seconds` each with `dances` dances each, or, for a network
+    without music (C = 0), as many walks and dances; all are mirrored, too.
+    `ear`: the recipe of an ear that is trained first; none for a network without one.
+    Raises ValueError for a regression that is to dance without music, too (it has one dance only),
+    and for an ear that does not fit the network.
     """
 
     config: Config  # of a network for dancers (`performers.networks`)
-    kinematic: KinematicWeights | None = None
-    loss_weights: DanceLossWeights = DanceLossWeights()
-    gain_noise: float = 0.0  # `beyond.gain_noise`
-    snr: float = 1.0  # factor on the signal-to-noise ratio of the cosine schedule
+    kinematic: KinematicWeights | None = KINEMATIC
+    changes: float = CHANGES  # weights in the data term: `beyond.loss_terms`
+    toes: float = TOE_CHANGES
+    gain_noise: float = 0.3  # `beyond.gain_noise`
+    no_music: float = 0.0  # share of the music left out: `beyond.classifier_free`
+    snr: float = 0.1  # factor on the signal-to-noise ratio of the cosine schedule
     frames: int = 100  # per window
     batch: int = 32
     songs: int = 1500
     seconds: float = 20.0
     dances: int = 2  # per song
-    motions: int = 0  # if not 0: so many walks and dances without music, instead of songs
-
-
-@dataclass(frozen=True)
-class SongRecipe(DanceRecipe):
-    """A training run on songs like real ones, usually with an ear that is trained first.
-
-    Raises ValueError for a regression that is to dance without music, too (it has one dance only),
-    and for an ear that does not fit the network.
-    """
-
-    no_music: float = 0.0  # share of the music left out: `beyond.classifier_free`
-    ear: EarRecipe | None = EAR
+    ear: EarRecipe | None = None
 
     def __post_init__(self):
         super().__post_init__()
@@ -74,41 +68,25 @@ class SongRecipe(DanceRecipe):
             raise ValueError("no_music: a regression cannot be guided, so it always has its music")
         own = getattr(self.config, "ear", None)
         given = self.ear.config if self.ear else None
-        if own != given:
+        if given and own != given:
             wanted = f"an ear with {own}" if own else "no ear: pass ear=None"
-            found = (
-                f"the ear given has {given}" if given else "none is given: pass ear=EarRecipe(...)"
-            )
-            raise ValueError(f"{self.name}: its network has {wanted}; {found}")
+            raise ValueError(f"{self.name}: its network has {wanted}; the ear given has {given}")
 
 
-X0 = replace(MOFUSION_SMALL, target="x0", skip=False)
 HEARING = HearingConfig(target="x0", skip=False)
-DANCER_PLAIN = SongRecipe(
-    "dancer-plain", HEARING, steps=8_000, loss_weights=OURS, gain_noise=0.3, snr=0.1, no_music=0.15
-)
-DANCER = replace(DANCER_PLAIN, name="dancer", kinematic=KINEMATIC)
-REGRESSED = SongRecipe(
-    "regression",
-    HearingTransformerConfig(deterministic=True),
-    steps=3000,
-    gain_noise=0.3,
-    snr=0.1,
+DANCER = DanceRecipe("dancer", HEARING, steps=8_000, no_music=0.15, ear=EAR)
+DANCER_PLAIN = replace(DANCER, name="dancer-plain", kinematic=None)
+REGRESSED = DanceRecipe(
+    "regression", HearingTransformerConfig(deterministic=True), steps=3000, ear=EAR
 )
 # never trained: it needs a GPU
 FULL = replace(HEARING, widths=MOFUSION_FULL.widths, heads=MOFUSION_FULL.heads)
 DANCER_FULL = replace(DANCER, name="dancer-full", config=FULL, steps=200_000, batch=64)
-
 UNCONDITIONAL = DanceRecipe(
     "unconditional",
-    replace(X0, C=0),
+    replace(MOFUSION_SMALL, target="x0", skip=False, C=0),
     steps=6000,
-    kinematic=KINEMATIC,
-    loss_weights=OURS,
-    gain_noise=0.3,
-    snr=0.1,
-    songs=0,
-    motions=3000,
+    songs=3000,
 )
 
 SHIPPED_DANCERS = (DANCER, DANCER_PLAIN, REGRESSED, UNCONDITIONAL)
@@ -123,14 +101,11 @@ def training_windows(recipe: DanceRecipe) -> DanceWindows:
     """The recipe's data, generated from its seed: songs, dances, and Mel spectrograms.
 
     The last data set is kept, because it takes minutes to generate.
-    Raises ValueError for a recipe that has neither songs nor motions.
     """
     seeds = recipe.data_seed, recipe.seconds
-    if isinstance(recipe, SongRecipe):
+    if recipe.config.C:
         return _song_windows(recipe.songs, *seeds, recipe.dances, recipe.frames)
-    if not recipe.motions:
-        raise ValueError(f"{recipe.name}: give motions, or make it a SongRecipe with songs")
-    return _motion_windows(recipe.motions, *seeds, recipe.frames)
+    return _motion_windows(recipe.songs, *seeds, recipe.frames)
 
 
 @lru_cache(maxsize=1)
@@ -173,7 +148,7 @@ def train_dancer(
     if ear and (wanted := getattr(recipe.config, "ear", None)) != ear.ear.config:
         needs = f"needs an ear with {wanted}" if wanted else "has no ear"
         raise ValueError(f"{recipe.name} {needs}; the ear that is given has {ear.ear.config}")
-    made_of = "mixed" if recipe.motions else "music.varied and data_synth.dancing"
+    made_of = "music.varied and data_synth.dancing" if recipe.config.C else "mixed"
     source = f"data_synth.{made_of}, synthetic" if windows is None else "given windows"
     windows = training_windows(recipe) if windows is None else windows
     schedule = schedule_of(recipe)
@@ -183,9 +158,9 @@ def train_dancer(
     facts: dict[str, Any] = {"windows": len(windows)} | bones_of(windows)
     if getattr(recipe.config, "ear", None):
         if ear is None:
-            if not (own := getattr(recipe, "ear", None)):
-                raise ValueError(f"{recipe.name} needs an ear: pass `ear`, or use a SongRecipe")
-            ear = ear_of(own, run_file.parent, log, device)
+            if not recipe.ear:
+                raise ValueError(f"{recipe.name} needs an ear: pass `ear`, or a recipe with one")
+            ear = ear_of(recipe.ear, run_file.parent, log, device)
         model.ear.load_state_dict(ear.hearing(windows.mel_scaler).state_dict())
         about["ear"] = digest_of_tensors(ear.ear.state_dict())[:16]
         facts["ear"] = ear.card
@@ -215,32 +190,34 @@ def schedule_of(recipe: DanceRecipe) -> Schedule:
 
 
 def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> LossFn:
-    """The loss of a recipe: MoFusion's, or a regression's if the network is deterministic."""
+    """Eq. 4 of dances and their music, which sounds as from different loudspeakers.
+
+    Now and then the music is left out. A regression has a loss of its own.
+    """
     if getattr(recipe.config, "deterministic", False):
         return regression_loss_of(recipe, windows)
     scaler = windows.motion_scaler
-    moved = partial(toes_moved, windows)
-    loss = weighted_loss(recipe.loss_weights, schedule, scaler, dance_frame.moves, moved)
-    of_batch = batch_loss(recipe.kinematic, loss, schedule, scaler, dance_frame.body_of)
+    toes = toe_changes(recipe.toes, dance_frame.moves, scaler.std, toes_moved(windows))
+    data = data_loss(recipe.changes, toes)
+    lambda_k = weight_by_step(schedule, KINEMATIC.over_time)
 
     def loss_fn(model: Any, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
         x0, mel, planted = (part.to(device) for part in drawn(recipe, windows, generator))
         music = model.listen(mel, windows.mel_times.to(device)) if model.config.C else None
-        if music is not None and (share := getattr(recipe, "no_music", 0)):
-            left_out = torch.rand(len(mel), generator=generator) < share
+        if music is not None and recipe.no_music:
+            left_out = torch.rand(len(mel), generator=generator) < recipe.no_music
             music = without(music, left_out.to(device))
-        return of_batch(model, x0, music, planted, generator)
+        kinematic = None
+        if recipe.kinematic:
+            body = dance_frame.body_of(scaler.to(device))
+            kinematic = recipe.kinematic.loss_of(body, planted)
+        return training_loss(
+            model, (x0, music), schedule, generator,
+            kinematic=kinematic, lambda_k=lambda_k, loss=data,
+        )  # fmt: skip
 
     return loss_fn
-
-
-def drawn(recipe: DanceRecipe, windows: DanceWindows, generator: torch.Generator) -> tuple:
-    """A random batch: motion, music (with the recipe's gain noise), and which feet are planted."""
-    motion, mel, planted = windows.draw(recipe.batch, generator)
-    if recipe.gain_noise:
-        mel = gain_noise(mel, recipe.gain_noise, generator)
-    return motion, mel, planted
 
 
 def regression_loss_of(recipe: DanceRecipe, windows: DanceWindows) -> LossFn:
@@ -253,6 +230,12 @@ def regression_loss_of(recipe: DanceRecipe, windows: DanceWindows) -> LossFn:
         return regression_loss(model, x0.to(device), mel.to(device), times)
 
     return loss_fn
+
+
+def drawn(recipe: DanceRecipe, windows: DanceWindows, generator: torch.Generator) -> tuple:
+    """A random batch: motion, music with the recipe's gain noise, and which feet are planted."""
+    motion, mel, planted = windows.draw(recipe.batch, generator)
+    return motion, gain_noise(mel, recipe.gain_noise, generator), planted
 
 
 def digest(windows: DanceWindows) -> str:

@@ -20,11 +20,11 @@ from jaxtyping import Bool, Float
 from torch import Tensor
 
 from ..beyond.around_lines import GivenLines
-from ..beyond.loss_terms import as_x0_errors, weighted, weighted_by_step
+from ..beyond.loss_terms import as_x0_errors, toe_changes, weighted, weighted_by_step
 from ..beyond.schedules import shifted
 from ..beyond.turning_frame import TurningFrame
 from ..ddpm import Schedule, cosine_schedule
-from ..kinematic_loss import Body, KinematicWeights
+from ..kinematic_loss import Body, training_loss, weight_by_step
 from ..motion import dance_frame
 from ..motion.known import first_place
 from ..motion.scaler import Scaler
@@ -35,8 +35,7 @@ from ..performers.networks import network
 from ..training import LossFn
 from .dancer import bones_of, digest
 from .drawn_masks import drawn_masks, uniform
-from .mofusion_loss import KINEMATIC, DanceLossWeights, batch_loss, weighted_loss
-from .mofusion_loss import OURS as LOSS_WEIGHTS
+from .mofusion_loss import CHANGES, KINEMATIC, TOE_CHANGES, data_loss
 from .recordings import CREDIT, Recorded, training_recordings
 from .training import Provenance, Recipe, on_device, train_recipe
 
@@ -46,8 +45,6 @@ class InbetweenerRecipe(Recipe):
     """One training run of an in-betweener."""
 
     config: KeyframeConfig
-    kinematic: KinematicWeights | None = None
-    loss_weights: DanceLossWeights = DanceLossWeights()
     snr: float = 1.0  # factor on the signal-to-noise ratio of the cosine schedule
     frames: int = 100  # per window
     batch: int = 32
@@ -71,8 +68,6 @@ INBETWEENER = InbetweenerRecipe(
     "inbetweener",
     KeyframeConfig(activity=True, turning=True),
     steps=10_000,
-    kinematic=KINEMATIC,
-    loss_weights=LOSS_WEIGHTS,
     snr=0.3,
     motions=1500,
     acts=1000,
@@ -98,8 +93,8 @@ def training_windows(recipe: InbetweenerRecipe) -> DanceWindows:
 
 
 NOT_DATA = (
-    "name", "config", "steps", "kinematic", "loss_weights", "snr", "lr", "optimizer", "batch",
-    "decay", "seed", "path_scale", "sizes", "stages",
+    "name", "config", "steps", "snr", "lr", "optimizer", "batch", "decay", "seed", "path_scale",
+    "sizes", "stages",
 )  # fmt: skip
 
 
@@ -205,13 +200,13 @@ def train_inbetweener(
 
 
 def loss_of(recipe: InbetweenerRecipe, windows: DanceWindows, schedule: Schedule) -> LossFn:
-    """The loss of a recipe: eq. 4 of the remainder, with the terms that the recipe names."""
+    """Eq. 4 of the remainder around the lines, each motion with a mask, a size and a height."""
     scaler = windows.motion_scaler
-    data_loss = weighted_loss(
-        recipe.loss_weights, schedule, scaler, dance_frame.moves, lambda: toes_moved(windows)
-    )
+    toes = toe_changes(TOE_CHANGES, dance_frame.moves, scaler.std, toes_moved(windows))
+    data = data_loss(CHANGES, toes)
     if recipe.config.target == "v":
-        data_loss = weighted_by_step(data_loss, as_x0_errors(schedule))
+        data = weighted_by_step(data, as_x0_errors(schedule))
+    lambda_k = weight_by_step(schedule, KINEMATIC.over_time)
 
     def loss_fn(model: Any, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
@@ -226,11 +221,13 @@ def loss_of(recipe: InbetweenerRecipe, windows: DanceWindows, schedule: Schedule
         columns = known.repeat_interleave(3, dim=-1).to(device)
         lines = model.lines(motion, columns, frame.to(device))
         squares = lines.scale.square()
-        loss = weighted(data_loss, squares / squares.mean((1, 2), keepdim=True))
-        of_batch = batch_loss(
-            recipe.kinematic, loss, schedule, scaler, lambda s: body_around(lines, s)
-        )
-        return of_batch(model, lines.remainder(motion), lines, planted.to(device), generator)
+        loss = weighted(data, squares / squares.mean((1, 2), keepdim=True))
+        body = body_around(lines, scaler.to(device))
+        kinematic = KINEMATIC.loss_of(body, planted.to(device))
+        return training_loss(
+            model, (lines.remainder(motion), lines), schedule, generator,
+            kinematic=kinematic, lambda_k=lambda_k, loss=loss,
+        )  # fmt: skip
 
     return loss_fn
 

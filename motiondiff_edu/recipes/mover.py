@@ -7,7 +7,7 @@ run continues from its last save.
 import copy
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache, partial
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +26,7 @@ from ..conditions.clip import load as load_clip
 from ..conditions.text import base_vocabulary, read_words
 from ..conditions.word_encoder import NOTHING, PADDING, ids_of
 from ..ddpm import Schedule, cosine_schedule
-from ..kinematic_loss import KinematicWeights, training_loss
+from ..kinematic_loss import KinematicWeights, training_loss, weight_by_step
 from ..motion import moving_frame
 from ..motion.skeleton import TOES
 from ..performers.described_windows import GRID, DescribedWindows
@@ -35,14 +35,14 @@ from ..performers.networks import network
 from ..performers.planned_mofusion import Performing, PlannedConfig, PlannedMoFusion
 from ..performers.text_mofusion import TextMoFusionConfig, Texts
 from ..training import LossFn
-from .mofusion_loss import KINEMATIC, OURS, DanceLossWeights, batch_loss, weighted_loss
+from .mofusion_loss import CHANGES, KINEMATIC, TOE_CHANGES, data_loss
 from .training import Provenance, Recipe, final_loss, on_device, train_recipe
 
 
 # ---- recipes -------------------------------------------------------------------------------------
 @dataclass(frozen=True)
 class MoverRecipe(Recipe):
-    """One training run of a mover; by default with the paper's loss.
+    """The sizes and rates of one training run of a mover.
 
     The data are `clips` described clips of `data_synth.actions`; every clip is also mirrored, with
     its words. The words of the configuration are those of the captions, unless it names a CLIP.
@@ -50,27 +50,17 @@ class MoverRecipe(Recipe):
 
     config: TextMoFusionConfig
     plan_steps: int = 0  # afterwards, of the network for timelines alone, which needs more of them
-    kinematic: KinematicWeights | None = None
-    loss_weights: DanceLossWeights = DanceLossWeights()
-    metres: float = 0.0  # power of `beyond.loss_terms.metre_weights`; 0: all columns alike
-    snr: float = 1.0  # factor on the signal-to-noise ratio of the cosine schedule
+    kinematic: KinematicWeights | None = replace(KINEMATIC, slide=1.0)
+    metres: float = 1.0  # power of `beyond.loss_terms.metre_weights`; 0: all columns alike
+    snr: float = 0.1  # factor on the signal-to-noise ratio of the cosine schedule
     frames: int = 3072  # of a batch, all motions together
-    no_text: float = 0.0  # share of the texts left out: `beyond.classifier_free`
+    no_text: float = 0.1  # share of the texts left out: `beyond.classifier_free`
     lr: float = 2e-3
     clips: int = 12_000
 
 
-MOVER_PLAIN = MoverRecipe(
-    "mover-plain",
-    PlannedConfig(),
-    steps=10_000,
-    plan_steps=14_000,
-    loss_weights=OURS,
-    metres=1.0,
-    snr=0.1,
-    no_text=0.1,
-)
-MOVER = replace(MOVER_PLAIN, name="mover", kinematic=replace(KINEMATIC, slide=1.0))
+MOVER = MoverRecipe("mover", PlannedConfig(), steps=10_000, plan_steps=14_000)
+MOVER_PLAIN = replace(MOVER, name="mover-plain", kinematic=None)
 # The paper's own way to read. Never trained here, because no weights of CLIP were at hand.
 MOVER_CLIP = replace(
     MOVER, name="mover-clip", config=replace(MOVER.config, clip=clip.NAME, clip_width=clip.WIDTH)
@@ -282,23 +272,31 @@ def loss_of(
     schedule: Schedule,
     texts_of: Callable[[Tensor], Texts] = texts_as_ids,
 ) -> LossFn:
-    """The loss of a recipe: its data, MoFusion's eq. 4, and the departures that it names.
+    """Eq. 4 of motions, given texts and timelines, and eq. 4 of the timelines, given texts.
 
     `texts_of` makes of the windows' ids what the network takes.
     """
-    scaler, moved = windows.scaler.part(slice(moving_frame.D)), partial(toes_moved, windows)
-    columns = loss_terms.metre_weights(scaler.std, recipe.metres) if recipe.metres else None
-    loss = weighted_loss(recipe.loss_weights, schedule, scaler, moving_frame.moves, moved, columns)
+    scaler = windows.scaler.part(slice(moving_frame.D))
+    columns = loss_terms.metre_weights(scaler.std, recipe.metres)
+    toes = loss_terms.toe_changes(TOE_CHANGES, moving_frame.moves, scaler.std, toes_moved(windows))
+    data = data_loss(CHANGES, toes, columns)
+    lambda_k = weight_by_step(schedule, KINEMATIC.over_time)
     batch = batches(recipe, windows, texts_of)
-    of_batch = batch_loss(recipe.kinematic, loss, schedule, scaler, moving_frame.body_of)
 
     def loss_fn(model: Any, generator: torch.Generator) -> Tensor:
         x0, plan, texts, planted = batch(next(model.parameters()).device, generator)
-        contexts = model.listen(texts)
-        if not isinstance(model, PlannedMoFusion):
-            return of_batch(model, x0, contexts, planted, generator)
-        planning = training_loss(model.planner, (plan, contexts.plan), schedule, generator)
-        return planning + of_batch(Performing(model, plan), x0, contexts, planted, generator)
+        contexts, planning, performing = model.listen(texts), 0.0, model
+        if isinstance(model, PlannedMoFusion):
+            planning = training_loss(model.planner, (plan, contexts.plan), schedule, generator)
+            performing = Performing(model, plan)
+        kinematic = None
+        if recipe.kinematic:
+            body = moving_frame.body_of(scaler.to(x0.device))
+            kinematic = recipe.kinematic.loss_of(body, planted)
+        return planning + training_loss(
+            performing, (x0, contexts), schedule, generator,
+            kinematic=kinematic, lambda_k=lambda_k, loss=data,
+        )  # fmt: skip
 
     return loss_fn
 

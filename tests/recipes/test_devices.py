@@ -21,7 +21,7 @@ CLIPS = 12
 DANCES = {
     "dancer": replace(DANCER, songs=1, seconds=8.0, batch=2),
     "regression": replace(REGRESSED, songs=1, seconds=8.0, batch=2),
-    "unconditional": replace(UNCONDITIONAL, motions=2, seconds=8.0, batch=2),
+    "unconditional": replace(UNCONDITIONAL, songs=2, seconds=8.0, batch=2),
 }
 
 

@@ -13,7 +13,8 @@ from motiondiff_edu.motion.moving_frame import D
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.performers.planned_mofusion import PlannedConfig, PlannedMoFusion
 from motiondiff_edu.performers.text_mofusion import TextMoFusion, TextMoFusionConfig
-from motiondiff_edu.recipes.mofusion_loss import KINEMATIC, DanceLossWeights
+from motiondiff_edu.recipes import mover as recipe_module
+from motiondiff_edu.recipes.mofusion_loss import CHANGES, KINEMATIC
 from motiondiff_edu.recipes.mover import (
     MOVER,
     MOVER_PLAIN,
@@ -31,6 +32,7 @@ from motiondiff_edu.recipes.training import Provenance
 SIZES = {"widths": (16, 24), "heads": 2, "C": 20, "S": 20, "word_layers": 1}
 TINY = TextMoFusionConfig(**SIZES)
 SHORT = MoverRecipe("tiny", TINY, steps=6, clips=10, frames=200)
+PLAIN = replace(SHORT, kinematic=None, metres=0.0)
 
 
 @pytest.fixture(scope="module")
@@ -47,18 +49,28 @@ def quiet(line: str) -> None:
     pass
 
 
-def test_a_recipe_without_departures_is_equation_4_without_kinematics(windows):
-    """By hand: the mean square of x0_hat, with the generator's own draws in their order."""
+def squares(error: torch.Tensor) -> torch.Tensor:
+    """The data term without the toes: squared errors of poses and, five times, of changes."""
+    return error.square().mean() + CHANGES * error.diff(dim=1).square().mean()
+
+
+@pytest.fixture
+def no_toes(monkeypatch):
+    monkeypatch.setattr(recipe_module, "TOE_CHANGES", 0.0)
+
+
+def test_the_loss_is_equation_4_and_without_kinematics_its_data_term(windows, no_toes):
+    """By hand: the squares of x0_hat, with the generator's own draws in their order."""
     torch.manual_seed(3)
     config = replace(TINY, words=windows.words)
     model, schedule = TextMoFusion(config).eval(), cosine_schedule(20)
-    found = loss_of(SHORT, windows, schedule)(model, torch.Generator().manual_seed(4))
+    found = loss_of(PLAIN, windows, schedule)(model, torch.Generator().manual_seed(4))
     generator = torch.Generator().manual_seed(4)
     x0, ids, _ = windows.draw(SHORT.frames, generator)
     torch.rand(len(ids), generator=generator)
     s = torch.randint(1, 21, (len(x0),), generator=generator)
     x_s = q_sample(x0, s, schedule, draw(x0, generator))
-    wanted = (x0 - model(x_s, s, model.listen(ids))).square().mean()
+    wanted = squares(x0 - model(x_s, s, model.listen(ids)))
     torch.testing.assert_close(found, wanted)
 
 
@@ -70,11 +82,11 @@ def test_each_departure_changes_the_loss(windows):
         loss_fn = loss_of(replace(SHORT, **changes), windows, cosine_schedule(20))
         return loss_fn(model, torch.Generator().manual_seed(4)).item()
 
-    plain = loss()
-    weights = [DanceLossWeights(changes=5.0), DanceLossWeights(toes=0.2)]
-    assert all(loss(loss_weights=one) > plain for one in weights)
-    assert loss(kinematic=KINEMATIC) > plain and loss(no_text=1.0) != plain
-    assert loss(metres=1.0) != plain
+    whole = loss()
+    assert loss(kinematic=None) < whole and loss(no_text=1.0) != whole != loss(metres=0.0)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(recipe_module, "TOE_CHANGES", 0.0)
+        assert loss() < whole
     assert toes_moved(windows) > 1e-4
 
 
@@ -111,25 +123,26 @@ def test_a_killed_training_continues_and_ends_like_one_in_one_go(windows, tmp_pa
         assert np.allclose(a, b, atol=1e-6), name
 
 
-def test_a_network_that_plans_learns_both_and_each_has_its_own_loss(planned):
-    """By hand: the mean square of the timeline's x0_hat, and of the motion's with a clean plan."""
+def test_a_network_that_plans_learns_both_and_each_has_its_own_loss(planned, no_toes):
+    """By hand: the mean square of the timeline's x0_hat, and the squares of the motion's with a
+    clean plan."""
     torch.manual_seed(3)
     config = tiny_plan(planned)
     model, schedule = PlannedMoFusion(config).eval(), cosine_schedule(20)
-    recipe = replace(SHORT, config=config)
+    recipe = replace(PLAIN, config=config)
     found = loss_of(recipe, planned, schedule)(model, seeded())
     generator, wanted = seeded(), 0.0
     x0, ids, _ = planned.draw(SHORT.frames, generator)
     torch.rand(len(ids), generator=generator)
     heard = model.listen(ids)
     motion, plan = x0[..., :D], x0[..., D:]
-    for clean, out in (
-        (plan, lambda x_s, s: model.planner(x_s, s, heard.plan)),
-        (motion, lambda x_s, s: model(x_s, s, heard, plan)),
+    for clean, out, loss in (
+        (plan, lambda x_s, s: model.planner(x_s, s, heard.plan), lambda e: e.square().mean()),
+        (motion, lambda x_s, s: model(x_s, s, heard, plan), squares),
     ):
         s = torch.randint(1, 21, (len(x0),), generator=generator)
         x_s = q_sample(clean, s, schedule, draw(clean, generator))
-        wanted = wanted + (clean - out(x_s, s)).square().mean()
+        wanted = wanted + loss(clean - out(x_s, s))
     torch.testing.assert_close(found, wanted)
     found.backward()
     assert all(p.grad is not None for p in model.planner.words.parameters())

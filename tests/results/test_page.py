@@ -185,34 +185,16 @@ def test_a_limit_that_is_a_record_has_an_interval_too():
         Claim("x", "1", "a.b", "about 3").verdict({})
 
 
-@pytest.mark.parametrize("dances, old", [(1, True), (records.DANCES, False), (None, True)])
-def test_claims_on_dances_that_were_replaced_stand_apart(dances, old):
-    about = {"dances": dances} if dances else {}
-    made = named(
-        record("dance-budget.v.x", 0.2, 0.4, **about), record("dancer.x", 0.2, 0.4, **about)
-    )
+def test_claims_are_counted_and_stand_in_a_table():
+    made = named(record("a.v.x", 0.2, 0.4), record("dancer.x", 0.2, 0.4))
     some = claims.read_claims(
-        "the short one | 3.1 | dance-budget.v.x | at least 0\n"
-        "of both | 3.2 | dancer.x | at least 0.9 of dance-budget.v.x\n"
-        "the shipped one | 3.3 | dancer.x | at least 0.5\n"
+        "one | 3.1 | a.v.x | at least 0\n"
+        "of both | 3.2 | dancer.x | at least 0.9 of a.v.x\n"
+        "another | 3.3 | dancer.x | at least 0.5\n"
+        "later | 3.4 | b.x | at least 0.5\n"
     )
     texts = claims.places(some, made)
-    assert texts["number of claims of today"] == ("1" if old else "3")
-    assert texts["number of claims of earlier"] == ("2" if old else "0")
-    place = "earlier" if old else "today"
-    assert texts[f"number of claims of {place}: {AGREES}"] == "1"
-    assert texts[f"number of claims of today: {DIFFERS}"] == "1"
-    assert (
-        f"| the short one | 3.1 | **{AGREES}** | 0.3 [0.2, 0.4] | at least 0 |"
-        in (texts[f"claims of {place}"])
-    )
-    assert "at least 0.9 of 0.3 [0.2, 0.4] |" in texts[f"claims of {place}"]
-
-
-def test_the_projects_claims_on_short_trainings_of_earlier_dances_are_not_counted(found):
-    (block,) = [text for kind, text in render.BLOCK.findall(TEMPLATE) if kind == "claims"]
-    some = claims.read_claims(block)
-    earlier = [one for one in some if one.record.startswith("dance-budget.")]
-    texts = claims.places(some, found)
-    assert texts["number of claims of earlier"] == str(len(earlier)) == "7"
-    assert texts["number of claims of today"] == str(len(some) - 7)
+    counts = [texts[f"number of claims: {word}"] for word in (AGREES, DIFFERS, OPEN, MISSING)]
+    assert texts["number of claims"] == "4" and counts == ["1", "1", "1", "1"]
+    assert f"| one | 3.1 | **{AGREES}** | 0.3 [0.2, 0.4] | at least 0 |" in texts["claims"]
+    assert "at least 0.9 of 0.3 [0.2, 0.4] |" in texts["claims"]

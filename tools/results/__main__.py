@@ -4,10 +4,10 @@
 
 Without --only, all parts are measured for which there are shipped weights; a name that is not known
 lists all parts. --full adds the sweeps that train, for minutes or hours a variant:
-walker-departures (from MoDiff to our walker), dance-budget, words-budget and mend-map. One variant
-of a sweep is a part as well: walker-departures.leap, dance-budget.v. Otherwise their records stay
-as they are. A training that was killed continues. By name alone are measured: what needs
-recordings, with MOTIONDIFF_REAL_DATA (recordings, recordings-inbetweens,
+walker-departures (from MoDiff to our walker), dancer-departures, words-budget and mend-map. One
+variant of a sweep is a part as well: walker-departures.leap, dancer-departures.ear. Otherwise
+their records stay as they are. A training that was killed continues. By name alone are measured:
+what needs recordings, with MOTIONDIFF_REAL_DATA (recordings, recordings-inbetweens,
 recordings-reconstructions, real-music, inbetween-budget), and course-shown (pages and demos, after
 `make pages`). --quick measures little, into build/quick, and
 is for trying the code. --render only writes the pages from the existing records.
@@ -30,12 +30,12 @@ from motiondiff_edu.viz.walks import footstep_curves
 
 from .course.exercises import course_records
 from .course.shown import shown_records
-from .dances import budget as dance_budget
+from .dances import departures as dance_departures
 from .dances import parts as dances
 from .dances import real_music
 from .dances.attention import attention_picture, attention_records
 from .dances.hearing import hearing_records
-from .dances.timing import TIMED, time_records
+from .dances.timing import time_records
 from .inbetweens import departures, inbetween, known_answer
 from .page.cards import add_metrics
 from .page.render import render
@@ -133,8 +133,7 @@ PARTS = {
     "footsteps": part(footsteps),
     "dance-data": part(lambda c, command: dances.data_records(c.stage, command)),
     "attention": part(attention, "dancer"),
-    "dance-time": part(lambda c, command: time_records(
-        TIMED, c.of(dance_budget.FULL, dance_budget.QUICK), c.of(ROUNDS, 2), command)),
+    "dance-time": part(lambda c, command: time_records(c.of(ROUNDS, 2), command)),
     "known-answer": part(lambda c, command: known_answer.known_answer_records(
         c.of(known_answer.FULL, known_answer.QUICK), command)),
     "course": part(lambda c, command: course_records(command, c.of(None, 3))),
@@ -183,9 +182,10 @@ SWEEPS = {
         walker_departures.VARIANTS,
         lambda c, runs: walker_departures.sweep(
             c.of(walker_departures.FULL, walker_departures.QUICK), runs)),
-    "dance-budget": Trained(
-        dance_budget.VARIANTS,
-        lambda c, runs: dance_budget.sweep(c.of(dance_budget.FULL, dance_budget.QUICK), runs)),
+    "dancer-departures": Trained(
+        dance_departures.VARIANTS,
+        lambda c, runs: dance_departures.sweep(
+            c.of(dance_departures.FULL, dance_departures.QUICK), runs)),
     "mend-map": Trained(
         dropout.VARIANTS,
         lambda c, runs: dropout.sweep(c.of(dropout.MAP_FULL, dropout.MAP_QUICK), runs,
@@ -260,7 +260,7 @@ def parts_of(only: list[str], full: bool, lines: Mapping[str, Walks], weights: s
     if unknown:
         sys.exit(
             f"no part is called {', '.join(unknown)}; there are: {', '.join([*names, *rows])}; "
-            "variants of the last: walker-departures.leap, dance-budget.v ..."
+            "variants of the last: walker-departures.leap, dancer-departures.ear ..."
         )
     return parts
 

@@ -19,9 +19,8 @@ import torch
 from motiondiff_edu.mofusion import MOFUSION_SMALL
 from motiondiff_edu.performers.dancer import ETA, STEPS, Dancer
 from motiondiff_edu.pretrained.checkpoints import pretrained
-from motiondiff_edu.recipes.dancer import HEARING, SongRecipe, train_dancer, training_windows
+from motiondiff_edu.recipes.dancer import HEARING, DanceRecipe, train_dancer, training_windows
 from motiondiff_edu.recipes.ear import EAR, ear_within
-from motiondiff_edu.recipes.mofusion_loss import KINEMATIC, DanceLossWeights
 
 from ..sweep import Sweep, Variant, minus
 from .parts import DANCED, DanceSize, Stage, danced
@@ -30,9 +29,10 @@ from .songs import UNSEEN
 PLAN = Path(__file__).parents[3] / "docs" / "results" / "dancer-departures" / "plan.json"
 LINEAR_MUSIC = replace(MOFUSION_SMALL, music_layers=0)
 X0 = {"target": "x0", "skip": False}
-BASE = SongRecipe(
-    "base", LINEAR_MUSIC, steps=2_000, kinematic=KINEMATIC, optimizer="adam", ear=None
-)
+BASE = DanceRecipe(
+    "base", LINEAR_MUSIC, steps=2_000, optimizer="adam", changes=0.0, toes=0.0, gain_noise=0.0,
+    snr=1.0,
+)  # fmt: skip
 
 
 def added(words: str, to: str = "base", **changes) -> Variant:
@@ -47,14 +47,8 @@ VARIANTS |= {"x0": added("x0 instead of eps", "muon", config=replace(LINEAR_MUSI
 VARIANTS |= {
     "convolutions": added("convolutions over the Mel", "x0", config=replace(MOFUSION_SMALL, **X0))
 }
-VARIANTS |= {
-    "changes": added(
-        "errors of changes", "convolutions", loss_weights=DanceLossWeights(changes=5.0)
-    )
-}
-VARIANTS |= {
-    "toes": added("errors of toes", "changes", loss_weights=DanceLossWeights(changes=5.0, toes=0.2))
-}
+VARIANTS |= {"changes": added("errors of changes", "convolutions", changes=5.0)}
+VARIANTS |= {"toes": added("errors of toes", "changes", toes=0.2)}
 VARIANTS |= {
     "ear": added("an ear", "toes", config=HEARING, ear=EAR),
     "more-noise": added("a schedule with more noise", "toes", snr=0.1),
@@ -79,13 +73,13 @@ FULL = Size()
 QUICK = Size(DanceSize(songs=3, seeds=1, pieces=2, each=2), steps=3, songs=2)
 
 
-def recipe_of(name: str, seed: int, size: Size) -> SongRecipe:
+def recipe_of(name: str, seed: int, size: Size) -> DanceRecipe:
     """The recipe of a variant, with the tuned rate of its optimiser.
 
     Raises ValueError where no rate was tried for that.
     """
     recipe = replace(BASE, **VARIANTS[name].recipe)
-    tried = json.loads(PLAN.read_text(encoding="utf-8"))["tried"].get(recipe.optimizer)
+    tried = rates().get(recipe.optimizer)
     if not tried:
         raise ValueError(
             f"{PLAN} has no rate for {recipe.optimizer}: try some, and note them there"
@@ -94,6 +88,11 @@ def recipe_of(name: str, seed: int, size: Size) -> SongRecipe:
     steps, songs = size.steps or recipe.steps, size.songs or recipe.songs
     name = f"dancer-departures-{name}"
     return replace(recipe, name=name, seed=seed, lr=rate, steps=steps, songs=songs)
+
+
+def rates() -> dict[str, dict[str, float]]:
+    """The rates that were tried, and the validation loss of each, by the optimiser."""
+    return json.loads(PLAN.read_text(encoding="utf-8"))["tried"]
 
 
 @cache

@@ -11,18 +11,22 @@ from dataclasses import replace
 import torch
 
 from benchmarks.records import record
+from motiondiff_edu.baselines.transformer import TransformerConfig
+from motiondiff_edu.mofusion import MOFUSION_SMALL
 from motiondiff_edu.performers.dance_windows import DanceWindows
 from motiondiff_edu.performers.dancer import STEPS, Dancer
-from motiondiff_edu.performers.networks import network
-from motiondiff_edu.recipes.dancer import loss_of, schedule_of
+from motiondiff_edu.performers.networks import Config, network
+from motiondiff_edu.recipes.dancer import DanceRecipe, loss_of, schedule_of, training_windows
 from motiondiff_edu.recipes.muon import optimizer_for
 from motiondiff_edu.training import TrainState, train_steps
 
-from .budget import MUSIC_FEATURES, Budget, material, recipe_of
-
-BASE = "x0"
-TIMED = ("x0", "alpha_bar", "linear-music", "transformer", "mfcc", "regression")
+BASE = "unet"
+NETWORKS: dict[str, Config] = {  # of equal size
+    "unet": replace(MOFUSION_SMALL, target="x0", skip=False),
+    "transformer": TransformerConfig(),
+}
 DANCES = 8  # at once
+BATCH = 16  # windows a step of training
 
 
 class Clock:
@@ -31,8 +35,7 @@ class Clock:
     Times are CPU-seconds of one call.
     """
 
-    def __init__(self, name: str, windows: DanceWindows, budget: Budget):
-        recipe = recipe_of(name, budget)
+    def __init__(self, recipe: DanceRecipe, windows: DanceWindows):
         schedule = schedule_of(recipe)
         torch.manual_seed(recipe.seed)
         model = network(recipe.config)
@@ -55,7 +58,7 @@ class Clock:
         self.dancer.model(self.x_s, torch.full((len(self.x_s),), 500), music)
 
     def dance(self) -> None:
-        """A dance as for a user: DDIM, with the fast twin where there is one."""
+        """A dance as for a user: DDIM."""
         mel = self.dancer.mel_scaler.inverse(self.mel)
         self.dancer.dance_mel(mel, self.x_s.shape[1], generator=torch.Generator().manual_seed(0))
 
@@ -67,20 +70,20 @@ def spent(call) -> float:
     return time.process_time() - began
 
 
-def time_records(names: tuple[str, ...], budget: Budget, rounds: int, command: str) -> list[dict]:
+def recipe_of(name: str) -> DanceRecipe:
+    """A training of a network; how many songs there are does not change the time of a step."""
+    return DanceRecipe(f"dance-time.{name}", NETWORKS[name], 1, songs=2, seconds=8.0, batch=BATCH)
+
+
+def time_records(rounds: int, command: str) -> list[dict]:
     """Steps, passes and dances of all networks in turns.
 
     Each has a record of its median, and of its ratio to BASE in the same round.
     """
     before = torch.get_num_threads()
     torch.set_num_threads(1)
-    small = replace(
-        budget, songs=2, seconds=8.0
-    )  # the amount of training data does not change the time
-    clocks = {
-        name: Clock(name, material(name if name in MUSIC_FEATURES else "", small), budget)
-        for name in names
-    }
+    windows = training_windows(recipe_of(BASE))
+    clocks = {name: Clock(recipe_of(name), windows) for name in NETWORKS}
     spans: dict[tuple[str, str], list[float]] = {}
     for turn in range(rounds + 1):
         for name, clock in clocks.items():
@@ -92,13 +95,13 @@ def time_records(names: tuple[str, ...], budget: Budget, rounds: int, command: s
     torch.set_num_threads(before)
     about = {
         "rounds": rounds,
-        "batch": budget.batch,
+        "batch": BATCH,
         "dances": DANCES,
         "frames": clock.x_s.shape[1],
         "steps": STEPS,
     }
     found = []
-    for name in names:
+    for name in NETWORKS:
         found.append(
             record(
                 f"dance-time.{name}.parameters", [clocks[name].parameters], unit="", command=command

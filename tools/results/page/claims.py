@@ -9,7 +9,7 @@ does not; across, it is undecided. The interval of a limit that is a record coun
 import re
 from dataclasses import dataclass
 
-from .records import cell, replaced_since, table
+from .records import cell, table
 
 AGREES, DIFFERS = "agrees", "does not agree"
 OPEN, MISSING = "undecided", "not measured"
@@ -63,19 +63,12 @@ def read_claims(block: str) -> list[Claim]:
 
 
 def places(claims: list[Claim], records: dict[str, dict]) -> dict[str, str]:
-    """What the template can name: counts and tables; claims tested on earlier data stand apart."""
-    groups: dict[str, list[Claim]] = {"today": [], "earlier": []}
-    for claim in claims:
-        old = any(replaced_since(records[name]) for name in claim.names if name in records)
-        groups["earlier" if old else "today"].append(claim)
-    found = {}
-    for name, some in groups.items():
-        verdicts = [claim.verdict(records) for claim in some]
-        for word in (AGREES, DIFFERS, OPEN, MISSING):
-            found[f"number of claims of {name}: {word}"] = str(verdicts.count(word))
-        found[f"number of claims of {name}"] = str(len(some))
-        found[f"claims of {name}"] = _table(some, verdicts, records)
-    return found
+    """What the template can name: the counts, and the table."""
+    verdicts = [claim.verdict(records) for claim in claims]
+    found = {f"number of claims: {word}": str(verdicts.count(word))
+             for word in (AGREES, DIFFERS, OPEN, MISSING)}  # fmt: skip
+    found["number of claims"] = str(len(claims))
+    return found | {"claims": _table(claims, verdicts, records)}
 
 
 def _table(claims: list[Claim], verdicts: list[str], records: dict[str, dict]) -> str:

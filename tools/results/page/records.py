@@ -3,7 +3,6 @@
 import json
 from pathlib import Path
 
-DANCES = 2  # of data_synth: from 2 on they travel, turn and change level, to songs like recordings
 NO_UNIT = ("", "ratio", "share", "kappa", "distance")
 
 
@@ -28,11 +27,6 @@ def by_name(files: dict[str, list[dict]]) -> dict[str, dict]:
                 )
             found[one["name"]], where[one["name"]] = one, file
     return found
-
-
-def replaced_since(record: dict) -> bool:
-    """Whether it was measured on earlier dances than those of today."""
-    return record["name"].startswith("dance-budget.") and record["seeds"].get("dances", 1) < DANCES
 
 
 def number(x: float | None) -> str:

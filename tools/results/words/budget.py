@@ -23,7 +23,6 @@ from motiondiff_edu.metrics.texts import actions
 from motiondiff_edu.motion import moving_frame
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.pretrained.judges import judges
-from motiondiff_edu.recipes.mofusion_loss import DanceLossWeights
 from motiondiff_edu.recipes.mover import MOVER, MoverRecipe, train_mover
 
 from ..sweep import Sweep, Variant
@@ -48,7 +47,6 @@ VARIANTS = {
     "no-kinematic": Variant("no kinematic losses", {"kinematic": None}),
     "shallow": Variant("no further layers in the middle", {"config": replace(SIZES, depth=0)}),
     "columns-alike": Variant("all columns alike, without weights by their spread", {"metres": 0.0}),
-    "plain-loss": Variant("errors of poses alone", {"loss_weights": DanceLossWeights()}),
     "cosine": Variant("the cosine schedule as it is", {"snr": 1.0}),
     "bag": Variant("no timeline, a bag of words", network_of(BagConfig)),
     "regression": Variant("no timeline, no noise: regression", network_of(RegressionConfig)),
