@@ -191,22 +191,16 @@ def missed(found: dict[str, Journey]) -> list[str]:
 
 
 # ---- departures ----------------------------------------------------------------------------------
-# kept whatever they gain, and why
-EXEMPT = {"held_control": "interactive use knows no future control"}
-
-
 def unproven(texts: dict[str, str], records: Iterable[dict]) -> dict[str, str]:
     """{name: why} of the departures without a proven gain; `texts` are their docstrings.
 
     One is unproven if it says "not measured yet", or if it names groups of records (`sweep.x.*`)
     with differences to a rival (`..._minus_rival`), and the interval of each contains 0. Those that
-    name other records are not counted, nor those of EXEMPT.
+    name other records are not counted.
     """
     apart = [one for one in records if "_minus_" in one["name"]]
     found = {}
     for name, text in texts.items():
-        if name in EXEMPT:
-            continue
         groups = re.findall(r"`([\w.-]+)\.\*`", text)
         named = [one for one in apart if any(one["name"].startswith(f"{g}.") for g in groups)]
         if "not measured yet" in text:

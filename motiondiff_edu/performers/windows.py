@@ -86,6 +86,22 @@ class Windows:
         return poses[:, : self.T_h], poses[:, self.T_h :], control
 
 
+def held_control(
+    control: Float[Tensor, "B T C"], T_h: int, share: float, generator: torch.Generator
+) -> Float[Tensor, "B T C"]:
+    """The control of a batch, of which a `share` holds row T_h - 1 over the future.
+
+    With a joystick the control after the step about to be taken is not known, so a rollout holds
+    it. A network that was always trained with the true future control would trust a held one as
+    well.
+    Ours; MoDiff takes the control up to t + T_p as known.  Notebook: 07
+    """
+    hold = torch.rand(len(control), generator=generator) < share
+    held = control[:, T_h - 1 : T_h].expand_as(control[:, T_h:])
+    future = held.where(hold[:, None, None].to(held.device), control[:, T_h:])
+    return torch.cat([control[:, :T_h], future], dim=1)
+
+
 def typical_change(windows: Windows, samples: int = 4096) -> Float[Tensor, "T_p D"]:
     """The RMS movement of poses in 1 to T_p frames, over windows, in standard deviations."""
     past, future, _ = windows.draw(samples, torch.Generator().manual_seed(0))

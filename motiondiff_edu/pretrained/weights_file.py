@@ -7,8 +7,8 @@ Weights take half the space of float16 in eight bits:
     q = round(w / scale), scale = max |row| / 127,   and back:  w = q scale
 The rounding error is at most half a scale, 1/254 of a row's largest weight (0.39 %); its RMS is
 1/sqrt(12) of a scale (0.23 %). Vectors (biases, norms) are small but sensitive, so they stay in
-float16. The weights of `walker` and `walker-eps` have 16 bits, all others 8, which keeps the
-package small. Every published number comes from the shipped weights.
+float16. All shipped weights have eight, which keeps the package small. Every published number comes
+from the shipped weights.
 Source: symmetric quantisation with one scale per row, as usual.
 """
 

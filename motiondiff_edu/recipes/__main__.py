@@ -18,21 +18,9 @@ from .inbetweener import INBETWEENER, train_inbetweener
 from .judges import JUDGES, train_judge
 from .mover import MOVER, MOVER_RECIPES, train_mover
 from .recordings import RecordingsError, recording_files
-from .walker import PAIRS, RECIPES, SHIPPED, clips_of, train
+from .walker import RECIPES, SHIPPED, clips_of, train
 
 ALL = RECIPES | DANCE_RECIPES | {INBETWEENER.name: INBETWEENER} | MOVER_RECIPES | JUDGES
-EIGHT_BITS = {
-    "dancer",
-    "dancer-plain",
-    "inbetweener",
-    "mover",
-    "regression",
-    "unconditional",
-    "walker-plain",
-    "walker-printed",
-    *(recipe.name for recipe in PAIRS),
-}  # to keep the package small; the others are stored in 16 bits
-
 EVERY = [
     recipe.name for recipe in (*SHIPPED, *SHIPPED_DANCERS, INBETWEENER, MOVER, *JUDGES.values())
 ]
@@ -149,7 +137,7 @@ def build(
         judge = train_judge(JUDGES[name], run, say, device)
         return save_judge(judge, out.parent / "judges" / out.name)
     made = trained(name, run, device=device, data=data, clip=clip, ear=ear)
-    return save(made, out, bits=8 if name in EIGHT_BITS else 16)
+    return save(made, out, bits=8)
 
 
 def trained(

@@ -18,7 +18,6 @@ import torch
 from torch import Tensor
 
 from .._files import digest_of_tensors
-from ..beyond.held_control import held_control
 from ..beyond.past_noise import past_noise
 from ..beyond.schedules import SCHEDULES
 from ..ddpm import Schedule
@@ -29,7 +28,7 @@ from ..motion.clip import Clip
 from ..motion.formats.files import read_motions
 from ..performers.networks import WalkerConfig, network
 from ..performers.walker import Walker
-from ..performers.windows import Windows, typical_change
+from ..performers.windows import Windows, held_control, typical_change
 from ..training import LossFn
 from .training import Provenance, Recipe, on_device, train_recipe
 
@@ -47,7 +46,7 @@ class WalkerRecipe(Recipe):
     lr: float = 4e-3
     schedule: str = "leap"  # or "linear": `beyond.schedules`
     batch: int = 64  # windows a step
-    held_control: float = 0.5  # share of the windows: `beyond.held_control`
+    held_control: float = 0.5  # share of the windows: `performers.windows`
     past_noise: float = 0.3  # standard deviations, at most: `beyond.past_noise`
     dropout: tuple[float, ...] = ()  # rates P_d of diffusion dropout in turn; none: no dropout
     dropout_start: float = START  # share of the training before the first of them

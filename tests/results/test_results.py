@@ -82,7 +82,7 @@ def test_a_card_tells_only_measures_of_its_own_weights(tmp_path):
     assert (
         cards.metrics(tmp_path, "walker", "other")
         == {}
-        == cards.metrics(tmp_path, "walker-eps", "abc")
+        == cards.metrics(tmp_path, "walker-plain", "abc")
     )
 
 

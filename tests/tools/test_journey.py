@@ -146,7 +146,6 @@ def test_a_departure_is_unproven_without_a_difference_that_is_not_0():
         "gains": "Gain: `sweep.a.*`",
         "nothing": "Gain: `sweep.b.*` and `sweep.c.*`",
         "other": "Gain: `sweep.c.*`",
-        "held_control": "Beside it: `sweep.b.*`",
         "later": "Gain: not measured yet; it will be `sweep.a.*`",
     }
     assert list(unproven(texts, records)) == ["nothing", "later"]

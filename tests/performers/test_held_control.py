@@ -3,7 +3,7 @@
 import pytest
 import torch
 
-from motiondiff_edu.beyond.held_control import held_control
+from motiondiff_edu.performers.windows import held_control
 
 CONTROL = torch.arange(400 * 6 * 3, dtype=torch.float32).reshape(400, 6, 3)
 
