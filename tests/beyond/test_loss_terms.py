@@ -7,7 +7,6 @@ import torch
 from motiondiff_edu.beyond.loss_terms import (
     as_x0_errors,
     changes,
-    high_noise_weights,
     metre_weights,
     toe_changes,
     total,
@@ -54,14 +53,6 @@ def test_columns_are_weighted_by_how_far_they_move(power):
     weights = metre_weights(torch.tensor([0.1, 0.3, 0.5]), power)
     assert weights[1] / weights[0] == pytest.approx(3**power)
     assert weights.mean().item() == pytest.approx(1)
-
-
-def test_steps_are_weighted_by_their_noise():
-    """beta 0.2, 0.35, 0.5, 0.65 ... leave 0.8, 0.52, 0.26, 0.091 of the signal; noise / signal is
-    capped at 3."""
-    wanted = [1, 1 + 0.2 / 0.8, 1 + 0.48 / 0.52, 1 + 0.74 / 0.26, 1 + 3, 1 + 3, 1 + 3]
-    found = high_noise_weights(linear_schedule(6, 0.2, 0.95), 3.0)
-    assert found.tolist() == pytest.approx(wanted)
 
 
 def test_errors_of_v_count_as_those_of_x0():
