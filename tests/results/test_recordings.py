@@ -239,7 +239,7 @@ def test_a_row_of_the_budget_is_trained_and_no_other_part(monkeypatch, tmp_path)
 
 def test_variants_differ_from_the_recipe_in_what_they_say():
     ours = trainings.recipe_of("ours", 1, trainings.FULL)
-    assert (ours.seed, ours.steps) == (1, 800)
+    assert (ours.seed, ours.steps) == (1, INBETWEENER.steps // 4)
     changed = {
         name: {
             key
@@ -249,7 +249,11 @@ def test_variants_differ_from_the_recipe_in_what_they_say():
         for name in trainings.VARIANTS
     }
     assert changed["no-recordings"] == {"name", "recordings"}
-    assert changed["no-activity"] == changed["no-turning"] == {"name", "config"}
+    configs = {name: trainings.recipe_of(name, 1, trainings.FULL).config for name in changed}
+    seen = {name: (one.activity, one.turning) for name, one in configs.items()}
+    assert seen["plain"] == (False, False) and seen["activity"] == (True, False)
+    assert seen["turning"] == (False, True) and seen["ours"] == (True, True)
+    assert all(changed[name] == {"name", "config"} for name in ("plain", "activity", "turning"))
     assert changed["no-variations"] == {
         "name", "variations", "levels", "paces", "stages",
     }  # fmt: skip
