@@ -8,9 +8,9 @@ walker-departures (from MoDiff to our walker), dancer-departures, words-budget a
 variant of a sweep is a part as well: walker-departures.leap, dancer-departures.ear. Otherwise
 their records stay as they are. A training that was killed continues. By name alone are measured:
 what needs recordings, with MOTIONDIFF_REAL_DATA (recordings, recordings-inbetweens,
-recordings-reconstructions, real-music, inbetween-budget), and course-shown (pages and demos, after
-`make pages`). --quick measures little, into build/quick, and
-is for trying the code. --render only writes the pages from the existing records.
+recordings-reconstructions, real-music, eye-recordings, inbetween-budget), and course-shown (pages
+and demos, after `make pages`). --quick measures little, into build/quick, and is for trying the
+code. --render only writes the pages from the existing records.
 """
 
 import argparse
@@ -28,6 +28,7 @@ from motiondiff_edu.performers.inbetweener import Inbetweener
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.viz.walks import footstep_curves
 
+from . import eyes
 from .course.exercises import course_records
 from .course.shown import shown_records
 from .dances import departures as dance_departures
@@ -121,6 +122,26 @@ def words_records(c: Context, command: str) -> list[dict]:
     return words.word_records(studio, command, words.on_all_cores)
 
 
+def eye(c: Context, command: str) -> list[dict]:
+    walker, own, _ = c.walker()
+    dancer, danced = c.performer("dancer")
+    inbetweener, filled = c.performer(SHOWN)
+    size = c.of(eyes.FULL, eyes.QUICK)
+    found = [
+        *eyes.walks(walker, size),
+        *eyes.dances(dancer, size),
+        *eyes.inbetweens(inbetweener, size),
+    ]
+    weights = {"walker": own, "dancer": danced, SHOWN: filled}
+    return eyes.records(found, size, weights, command)
+
+
+def eye_recordings(c: Context, command: str) -> list[dict]:
+    walker, own, _ = c.walker()
+    size = c.of(eyes.FULL, eyes.QUICK)
+    return eyes.records(eyes.recordings(walker, size), size, {"walker": own}, command)
+
+
 def continued(c: Context, command: str) -> list[dict]:
     measured = *c.walker(), command
     return [*continuations.recorded_records(*measured), *persons.person_records(*measured)]
@@ -146,6 +167,8 @@ PARTS = {
         c.performer(SHOWN), c.performer(MASKED), c.of(inbetween.FULL, inbetween.QUICK), command),
         SHOWN, MASKED),
     "words": part(words_records, "mover"),
+    "eye": part(eye, "walker", "dancer", SHOWN),
+    "eye-recordings": part(eye_recordings, "walker", by_name=True),
     "guided": part(lambda c, command: dances.guided_records(c.stage, command), "dancer"),
     "ear": part(lambda c, command: hearing_records(c.stage, command), "dancer"),
     "recordings": part(continued, "walker", by_name=True),
