@@ -50,7 +50,6 @@ def weighted(
     entry.
 
     Losses of differences (`bones`, `changes`, `toe_changes`) do not suit all of them: see above.
-    Notebook: 07
     """
     roots = weights.sqrt()
     return lambda error, s: loss(roots.to(error) * error, s)
@@ -67,7 +66,7 @@ def metre_weights(std: Float[Tensor, "D"], power: float = 2.0) -> Float[Tensor, 
 
     Power 2 measures errors in metres, power 0 in standard deviations.
 
-    A toe moves ten times as far as a hip, so in metres its errors count more.   Notebook: 07
+    A toe moves ten times as far as a hip, so in metres its errors count more.
     """
     weights = std**power
     return weights / weights.mean()

@@ -5,7 +5,6 @@ pasts alone, small errors grow. The paper's remedy is diffusion dropout (MoDiff 
 ours, and the shipped walkers have it.
 Gain: docs/RESULTS.md, *From the paper's walker to ours* (`ladder.ours-clean-past.*`,
 docs/results/ladder): the control is kept better and feet slide less; bone errors do not change.
-Notebook: 07
 """
 
 import torch
@@ -27,7 +26,6 @@ def past_noise(
     (standardised). The fresh one has up to amount / 0.3 times `change`, which is how far each
     column moves in one frame. Each past has its own two levels, drawn evenly on a log scale over
     two decades: the network must keep small errors small, and correct large ones.
-    Notebook: 07
     """
     B, T_h, D = past.shape
     steady, fresh = amount * 10 ** (-2 * torch.rand(2, B, 1, 1, generator=generator))

@@ -7,7 +7,6 @@ takes every window several times, and `SharedEncoding` encodes it once. The loss
 two noises a step takes about seven tenths of the time of one on twice as many windows.
 Gain: docs/RESULTS_ALL.md (`bench.shared_encoding_over_apart`).
 Ours: in Algorithm 1 each window has one step.
-Notebook: 07
 """
 
 from dataclasses import dataclass
@@ -21,10 +20,7 @@ from ..diffusion_dropout import changed_samples
 
 
 def repeated(batch: tuple[Tensor, ...], noises: int) -> tuple[Tensor, ...]:
-    """Every window of the batch, `noises` times in a row.
-
-    Notebook: 07
-    """
+    """Every window of the batch, `noises` times in a row."""
     return tuple(part.repeat_interleave(noises, dim=0) for part in batch)
 
 
@@ -45,7 +41,6 @@ class SharedEncoding:
     """A MoDiff for `repeated` batches: it encodes equal copies of a window once.
 
     Diffusion dropout makes some copies of a past different from the first; they are encoded, too.
-    Notebook: 07
     """
 
     model: Encoding
