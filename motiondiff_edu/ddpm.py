@@ -432,7 +432,7 @@ def squared_error(error: X, s: Int[Tensor, "B"]) -> Float[Tensor, ""]:
     """Mean of error^2, with the same weight for all entries and all steps s.
 
     It is the loss of the papers (Algorithm 1 omits the square).
-    Source: MoDiff eq. 10.  Notebook: 07.
+    Source: MoDiff eq. 10.
     """
     return error.square().mean()
 

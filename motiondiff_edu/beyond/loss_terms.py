@@ -42,7 +42,11 @@ def weighted(
     """A loss whose squares have weights, by column (`metre_weights`), frame or
     entry.
 
+<<<<<<< HEAD
     Losses of differences (`changes`, `toe_changes`) do not suit all of them: see above.
+=======
+    Losses of differences (`bones`, `changes`, `toe_changes`) do not suit all of them: see above.
+>>>>>>> main
     """
     roots = weights.sqrt()
     return lambda error, s: loss(roots.to(error) * error, s)

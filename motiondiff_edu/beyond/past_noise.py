@@ -3,9 +3,14 @@
 A walker continues its own poses, which are never quite right. If it was trained on clean
 pasts alone, small errors grow. The paper's remedy is diffusion dropout (MoDiff III-D); this one is
 ours, and the shipped walkers have it.
+<<<<<<< HEAD
 Gain: docs/RESULTS.md, *From the paper's walker to ours* (`walker-departures.past-noise.*`): bone
 errors are smaller, the control is kept better, feet slide less.
 Notebook: 07
+=======
+Gain: docs/RESULTS.md, *From the paper's walker to ours* (`ladder.ours-clean-past.*`,
+docs/results/ladder): the control is kept better and feet slide less; bone errors do not change.
+>>>>>>> main
 """
 
 import torch
@@ -27,7 +32,6 @@ def past_noise(
     (standardised). The fresh one has up to amount / 0.3 times `change`, which is how far each
     column moves in one frame. Each past has its own two levels, drawn evenly on a log scale over
     two decades: the network must keep small errors small, and correct large ones.
-    Notebook: 07
     """
     B, T_h, D = past.shape
     steady, fresh = amount * 10 ** (-2 * torch.rand(2, B, 1, 1, generator=generator))

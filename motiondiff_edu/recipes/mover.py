@@ -327,7 +327,8 @@ def batches(
     ) -> tuple[Tensor, Tensor, Texts, Tensor]:
         x0, ids, planted = windows.draw(recipe.frames, generator)
         ids = without_some(ids, recipe.no_text, generator)
-        x0, planted, texts = x0.to(device), planted.to(device), texts_of(ids).to(device)
+        x0, planted = x0.to(device), planted.to(device)
+        texts = texts_of(ids).to(device)
         return x0[..., : moving_frame.D], x0[..., moving_frame.D :], texts, planted
 
     return batch

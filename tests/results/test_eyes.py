@@ -38,8 +38,9 @@ def test_what_is_judged_is_what_the_walker_put_after_the_given_frames(walk):
     assert len(made) == len(walk) - 30 and bodies.still_share(made) == 1
 
 
-def test_records_say_of_which_weights_they_are():
+def test_records_say_of_which_weights_they_are(monkeypatch):
     found = eyes.told("walks.data", eyes.WALKS, [np.zeros((40, 21, 3))])
-    (one,) = [x for x in eyes.records(found, eyes.QUICK, {"walker": "abc"}, "c")
-              if x["name"] == "eye.walks.data.still_share"]  # fmt: skip
-    assert one["value"] == 1 and one["seeds"]["weights"] == {"walker": "abc"}
+    monkeypatch.setattr(eyes, "recordings", lambda walker, size: found)
+    made = {one["name"]: one for one in eyes.recorded_records(("walker", "abc"), eyes.QUICK, "c")}
+    one = made["eye.walks.data.still_share"]
+    assert one["value"] == 1 and one["seeds"]["weights"] == ["abc"]

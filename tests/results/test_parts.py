@@ -26,6 +26,8 @@ CALLED = {  # part: where its function is, and its name
     "recordings-inbetweens": (command.recorded_inbetweens, "inbetween_records"),
     "real-music": (command.real_music, "music_records"),
     "course-shown": (command, "shown_records"),
+    "eye": (command.eyes, "eye_records"),
+    "eye-recordings": (command.eyes, "recorded_records"),
 }
 
 

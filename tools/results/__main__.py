@@ -122,26 +122,6 @@ def words_records(c: Context, command: str) -> list[dict]:
     return words.word_records(studio, command, words.on_all_cores)
 
 
-def eye(c: Context, command: str) -> list[dict]:
-    walker, own, _ = c.walker()
-    dancer, danced = c.performer("dancer")
-    inbetweener, filled = c.performer(SHOWN)
-    size = c.of(eyes.FULL, eyes.QUICK)
-    found = [
-        *eyes.walks(walker, size),
-        *eyes.dances(dancer, size),
-        *eyes.inbetweens(inbetweener, size),
-    ]
-    weights = {"walker": own, "dancer": danced, SHOWN: filled}
-    return eyes.records(found, size, weights, command)
-
-
-def eye_recordings(c: Context, command: str) -> list[dict]:
-    walker, own, _ = c.walker()
-    size = c.of(eyes.FULL, eyes.QUICK)
-    return eyes.records(eyes.recordings(walker, size), size, {"walker": own}, command)
-
-
 def continued(c: Context, command: str) -> list[dict]:
     measured = *c.walker(), command
     return [*continuations.recorded_records(*measured), *persons.person_records(*measured)]
@@ -167,8 +147,11 @@ PARTS = {
         c.performer(SHOWN), c.performer(MASKED), c.of(inbetween.FULL, inbetween.QUICK), command),
         SHOWN, MASKED),
     "words": part(words_records, "mover"),
-    "eye": part(eye, "walker", "dancer", SHOWN),
-    "eye-recordings": part(eye_recordings, "walker", by_name=True),
+    "eye": part(lambda c, command: eyes.eye_records(
+        c.walker()[:2], c.performer("dancer"), c.performer(SHOWN), c.of(eyes.FULL, eyes.QUICK),
+        command), "walker", "dancer", SHOWN),
+    "eye-recordings": part(lambda c, command: eyes.recorded_records(
+        c.walker()[:2], c.of(eyes.FULL, eyes.QUICK), command), "walker", by_name=True),
     "guided": part(lambda c, command: dances.guided_records(c.stage, command), "dancer"),
     "ear": part(lambda c, command: hearing_records(c.stage, command), "dancer"),
     "recordings": part(continued, "walker", by_name=True),

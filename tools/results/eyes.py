@@ -136,7 +136,23 @@ def inbetweens(inbetweener: Inbetweener, size: EyeSize) -> list[Measure]:
             for name, row in rows.items()]  # fmt: skip
 
 
-def records(found: list[Measure], size: EyeSize, weights: dict[str, str], command: str) -> list:
-    """The records `eye.*`; `weights` are the digests of the networks."""
+def eye_records(
+    walker: tuple[Walker, str],
+    dancer: tuple[Dancer, str],
+    inbetweener: tuple[Inbetweener, str],
+    size: EyeSize,
+    command: str,
+) -> list[dict]:
+    """The records of synthetic data; networks come with the digests of their weights."""
+    found = walks(walker[0], size) + dances(dancer[0], size) + inbetweens(inbetweener[0], size)
+    return _records(found, size, [one[1] for one in (walker, dancer, inbetweener)], command)
+
+
+def recorded_records(walker: tuple[Walker, str], size: EyeSize, command: str) -> list[dict]:
+    """The records of recordings."""
+    return _records(recordings(walker[0], size), size, [walker[1]], command)
+
+
+def _records(found: list[Measure], size: EyeSize, weights: list[str], command: str) -> list[dict]:
     seeds = {"data": UNSEEN + 7, "clips": size.clips, "weights": weights}
     return [one.as_record("eye.", seeds, command) for one in found]
