@@ -39,14 +39,9 @@ def total(*losses: Loss) -> Loss:
 def weighted(
     loss: Loss, weights: Float[Tensor, "D"] | Float[Tensor, "T 1"] | Float[Tensor, "B T D"]
 ) -> Loss:
-    """A loss whose squares have weights, by column (`metre_weights`), frame or
-    entry.
+    """A loss whose squares have weights, by column (`metre_weights`), frame or entry.
 
-<<<<<<< HEAD
     Losses of differences (`changes`, `toe_changes`) do not suit all of them: see above.
-=======
-    Losses of differences (`bones`, `changes`, `toe_changes`) do not suit all of them: see above.
->>>>>>> main
     """
     roots = weights.sqrt()
     return lambda error, s: loss(roots.to(error) * error, s)

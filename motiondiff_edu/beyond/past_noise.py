@@ -3,14 +3,8 @@
 A walker continues its own poses, which are never quite right. If it was trained on clean
 pasts alone, small errors grow. The paper's remedy is diffusion dropout (MoDiff III-D); this one is
 ours, and the shipped walkers have it.
-<<<<<<< HEAD
 Gain: docs/RESULTS.md, *From the paper's walker to ours* (`walker-departures.past-noise.*`): bone
 errors are smaller, the control is kept better, feet slide less.
-Notebook: 07
-=======
-Gain: docs/RESULTS.md, *From the paper's walker to ours* (`ladder.ours-clean-past.*`,
-docs/results/ladder): the control is kept better and feet slide less; bone errors do not change.
->>>>>>> main
 """
 
 import torch

@@ -211,8 +211,6 @@ def loss_of(
     recipe: WalkerRecipe, windows: Windows, schedule: Schedule, dropout: Dropout | None = None
 ) -> LossFn:
     """Algorithm 1 of windows that are drawn: part of them hold their control, all pasts are noised.
-
-    Notebook: 07
     """
     change = typical_change(windows)[0]
 
