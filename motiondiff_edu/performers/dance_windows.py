@@ -31,6 +31,16 @@ def mel_frames(n: int) -> int:
     return n * MEL_GRID // MOTION_GRID + 1
 
 
+def warn_of_short(short: int, dances: int, n: int) -> None:
+    """Say how many dances are shorter than a window of n frames."""
+    warnings.warn(
+        f"{short} of {dances} dances are left out: with their music they are shorter than a window "
+        f"of {n} frames, {n / FPS:g} s",
+        MotionWarning,
+        stacklevel=3,
+    )
+
+
 @dataclass(frozen=True, eq=False)
 class DanceWindows:
     """Windows of n frames, standardised, with the Mel frames and the contacts of the same seconds.
@@ -99,12 +109,7 @@ class DanceWindows:
         if not starts:
             raise ValueError(f"no dance has {n} frames with music")
         if short:
-            warnings.warn(
-                f"{short} of {len(dances)} dances are left out: with their music they are "
-                f"shorter than a window of {n} frames, {n / FPS:g} s",
-                MotionWarning,
-                stacklevel=2,
-            )
+            warn_of_short(short, len(dances), n)
         positions = torch.from_numpy(np.concatenate(dances)).float()
         stands, mel = torch.from_numpy(np.concatenate(contacts)), torch.cat(songs).float()
         units = Scaler.fit(mel) if mel.shape[1] else Scaler.nothing(0)
