@@ -285,7 +285,8 @@ def loss_of(
 
     def loss_fn(model: Any, generator: torch.Generator) -> Tensor:
         x0, plan, texts, planted = batch(next(model.parameters()).device, generator)
-        contexts, planning, performing = model.listen(texts), 0.0, model
+        contexts = model.listen(texts)
+        planning, performing = 0.0, model
         if isinstance(model, PlannedMoFusion):
             planning = training_loss(model.planner, (plan, contexts.plan), schedule, generator)
             performing = Performing(model, plan)
