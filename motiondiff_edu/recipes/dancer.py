@@ -76,8 +76,14 @@ class DanceRecipe(Recipe):
 HEARING = HearingConfig(target="x0", skip=False)
 DANCER = DanceRecipe("dancer", HEARING, steps=8_000, no_music=0.15, ear=EAR)
 DANCER_PLAIN = replace(DANCER, name="dancer-plain", kinematic=None)
-REGRESSED = DanceRecipe(
-    "regression", HearingTransformerConfig(deterministic=True), steps=3000, ear=EAR
+REGRESSED = replace(
+    DANCER_PLAIN,
+    name="regression",
+    config=HearingTransformerConfig(deterministic=True),
+    steps=3000,
+    changes=0.0,
+    toes=0.0,
+    no_music=0.0,
 )
 # never trained: it needs a GPU
 FULL = replace(HEARING, widths=MOFUSION_FULL.widths, heads=MOFUSION_FULL.heads)
