@@ -22,8 +22,7 @@ OPEN = {
     "widgets/controls.py steering": "the keywords are those of the function that is steered",
     "results/walks/ladder.py out": "the keywords are fields of a Recipe, as in `replace`",
     "results/walks/ladder.py into": "as `out`",
-    "results/walks/departures.py added": "as `out`",
-    "results/dances/departures.py added": "as `out`, of a DanceRecipe",
+    "results/sweep.py further": "as `out`",
     "results/dances/budget.py differs": "as `out`, of a DanceRecipe",
     "tools/mutants.py _with": "the keywords are fields of a node, as in `replace`",
 }

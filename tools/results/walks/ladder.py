@@ -32,7 +32,7 @@ from motiondiff_edu.recipes.walker import (
 )
 
 from ..repairs.trials import SHARE, continued
-from ..sweep import Rows, Sweep, Variant, minus
+from ..sweep import Rows, Sweep, Variant, differences
 from .parts import size_of_network
 from .scores import FPS, WALKS, Kind, ratio_of_roots, root_mean, squared_bone_error
 from .trials import T_H, UNSEEN, Trials
@@ -192,5 +192,5 @@ def sweep(size: Size, runs: Path) -> Sweep:
     return Sweep(
         "ladder", VARIANTS, trained,
         lambda name, walker, seed: rows_of(walker, trials_of(size), seed),
-        KINDS, {f"{kind}_minus_{{}}": minus(how) for kind, how in KINDS.items()}, about, (0, 1, 2),
+        KINDS, differences(KINDS), about, (0, 1, 2),
     )  # fmt: skip
