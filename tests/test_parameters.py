@@ -20,8 +20,7 @@ OPEN = {
     "widgets/explore.py explore": "the keywords are the parameters of the function that is drawn",
     "widgets/explore.py refresh": "as `explore`",
     "widgets/controls.py steering": "the keywords are those of the function that is steered",
-    "results/walks/departures.py added": "the keywords are fields of a recipe, as in `replace`",
-    "results/dances/departures.py added": "as in walks/departures.py",
+    "results/sweep.py further": "the keywords are fields of a recipe, as in `replace`",
     "tools/mutants.py _with": "the keywords are fields of a node, as in `replace`",
 }
 

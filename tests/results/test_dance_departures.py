@@ -40,8 +40,8 @@ def tiny(monkeypatch):
             layers = {"music_layers": min(config.music_layers, 1)}
             made = variant.recipe | {"config": small(config, **layers)}
             monkeypatch.setitem(VARIANTS, name, replace(variant, recipe=made))
-    tried = {"tried": {"adam": {"0.002": 1.0}, "muon": {"0.003": 1.0}}}
-    monkeypatch.setattr(departures, "rates", lambda: tried["tried"])
+    tuned = {"adam": 0.002, "muon": 0.003}
+    monkeypatch.setattr(departures, "tuned_rate", lambda plan, optimizer: tuned[optimizer])
 
 
 def records_of(name: str, folder) -> dict[str, dict]:

@@ -127,6 +127,27 @@ def _differences(sweep: Sweep, kept: dict, label: str, rival: str, folder: Path)
     return measures_over_seeds(kinds, both, groups)
 
 
+def further(variants: Mapping[str, Variant], words: str, to: str = "base", **changes) -> Variant:
+    """A variant with further changes of the recipe of `to`, with which it is compared."""
+    return Variant(words, variants[to].recipe | changes, {to: to})
+
+
+def tuned_rate(plan: Path, optimizer: str) -> float:
+    """The rate of an optimiser that had the smallest validation loss of those in a plan.
+
+    Raises ValueError where none was tried.
+    """
+    tried = json.loads(plan.read_text(encoding="utf-8"))["tried"].get(optimizer)
+    if not tried:
+        raise ValueError(f"{plan} has no rate for {optimizer}: try some, and note them there")
+    return float(min(tried, key=tried.get))
+
+
+def differences(kinds: Mapping[str, Kind]) -> dict[str, Kind]:
+    """The difference of each measure from the rival's."""
+    return {f"{name}_minus_{{}}": minus(kind) for name, kind in kinds.items()}
+
+
 def minus(kind: Kind) -> Kind:
     """The difference of a measure from the rival's."""
     n = len(kind.rows)

@@ -5,11 +5,10 @@ layer of the music, and kinematic losses weighted by alpha_bar. Each other varia
 words say to another one. A training has a quarter of the shipped dancer's steps. Dances are sampled
 as `Dancer.dance` does it, and measured before the clean-up.
 docs/results/dancer-departures/plan.json has the validation loss of `base` for each rate that was
-tried, after 500 steps (`tried`); an optimiser has the rate with the smallest one.
+tried, after 300 steps; an optimiser has the rate with the smallest one.
 Source: MoFusion 3, 4.1.  Notebook: 12, 13
 """
 
-import json
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
@@ -22,7 +21,7 @@ from motiondiff_edu.pretrained.checkpoints import pretrained
 from motiondiff_edu.recipes.dancer import HEARING, DanceRecipe, train_dancer, training_windows
 from motiondiff_edu.recipes.ear import EAR, ear_within
 
-from ..sweep import Sweep, Variant, minus
+from ..sweep import Sweep, Variant, differences, further, tuned_rate
 from .parts import DANCED, DanceSize, Stage, danced
 from .songs import UNSEEN
 
@@ -35,13 +34,8 @@ BASE = DanceRecipe(
 )  # fmt: skip
 
 
-def added(words: str, to: str = "base", **changes) -> Variant:
-    """A variant with further changes of the recipe, and the one that it is compared with."""
-    before = {} if to == "base" else VARIANTS[to].recipe
-    return Variant(words, before | changes, {to: to})
-
-
 VARIANTS: dict[str, Variant] = {"base": Variant("MoFusion: eps with the skip, Adam", {})}
+added = partial(further, VARIANTS)
 VARIANTS |= {"muon": added("Muon", optimizer="muon")}
 VARIANTS |= {"x0": added("x0 instead of eps", "muon", config=replace(LINEAR_MUSIC, **X0))}
 VARIANTS |= {
@@ -79,20 +73,10 @@ def recipe_of(name: str, seed: int, size: Size) -> DanceRecipe:
     Raises ValueError where no rate was tried for that.
     """
     recipe = replace(BASE, **VARIANTS[name].recipe)
-    tried = rates().get(recipe.optimizer)
-    if not tried:
-        raise ValueError(
-            f"{PLAN} has no rate for {recipe.optimizer}: try some, and note them there"
-        )
-    rate = float(min(tried, key=tried.get))
+    rate = tuned_rate(PLAN, recipe.optimizer)
     steps, songs = size.steps or recipe.steps, size.songs or recipe.songs
     name = f"dancer-departures-{name}"
     return replace(recipe, name=name, seed=seed, lr=rate, steps=steps, songs=songs)
-
-
-def rates() -> dict[str, dict[str, float]]:
-    """The rates that were tried, and the validation loss of each, by the optimiser."""
-    return json.loads(PLAN.read_text(encoding="utf-8"))["tried"]
 
 
 @cache
@@ -121,6 +105,5 @@ def sweep(size: Size, runs: Path) -> Sweep:
     return Sweep(
         "dancer-departures", VARIANTS, trained,
         lambda name, dancer, seed: danced(stage(size.measured), dancer).rows,
-        DANCED, {f"{kind}_minus_{{}}": minus(how) for kind, how in DANCED.items()}, about,
-        (0,),
+        DANCED, differences(DANCED), about, (0,),
     )  # fmt: skip

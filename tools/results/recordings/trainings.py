@@ -12,7 +12,7 @@ from pathlib import Path
 from motiondiff_edu.performers.inbetweener import STEPS, Inbetweener
 from motiondiff_edu.recipes.inbetweener import INBETWEENER, InbetweenerRecipe, train_inbetweener
 
-from ..sweep import Sweep, Variant, minus
+from ..sweep import Sweep, Variant, differences
 from .inbetweens import KINDS, SECOND, columns, in_turn, windows_of
 from .windows import RecordedSize
 
@@ -94,6 +94,6 @@ def sweep(budget: Budget, runs: Path) -> Sweep:
 
     return Sweep(
         "inbetween-budget", VARIANTS, lambda name, seed: trained(name, seed, budget, runs), measure,
-        KINDS, {f"{kind}_minus_{{}}": minus(how) for kind, how in KINDS.items()}, about,
+        KINDS, differences(KINDS), about,
         budget.seeds,
     )  # fmt: skip

@@ -10,9 +10,8 @@ the smallest one. Muon gained most of the first departures, so the next ones are
 Source: MoDiff III-D, IV-A, Alg. 1.  Notebook: 07
 """
 
-import json
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -31,7 +30,7 @@ from motiondiff_edu.performers.walker import STEPS, Walker
 from motiondiff_edu.recipes.walker import WalkerRecipe, train, training_clips
 
 from ..repairs.trials import SHARE, continued
-from ..sweep import Rows, Sweep, Variant, minus
+from ..sweep import Rows, Sweep, Variant, differences, further, tuned_rate
 from .parts import size_of_network
 from .scores import (
     EDGE,
@@ -53,13 +52,8 @@ BASE = WalkerRecipe(
 )  # fmt: skip
 
 
-def added(words: str, to: str = "base", **changes) -> Variant:
-    """A variant with further changes of the recipe, and the one that it is compared with."""
-    before = {} if to == "base" else VARIANTS[to].recipe
-    return Variant(words, before | changes, {to: to})
-
-
 VARIANTS: dict[str, Variant] = {"base": Variant("MoDiff: eps with the skip, Adam", {})}
+added = partial(further, VARIANTS)
 VARIANTS |= {
     "leap": added("leap schedule", schedule="leap"),
     "muon": added("Muon", optimizer="muon"),
@@ -97,12 +91,7 @@ def recipe_of(name: str, seed: int, size: Size) -> WalkerRecipe:
     Raises ValueError where no rate was tried for that.
     """
     recipe = replace(BASE, **VARIANTS[name].recipe)
-    tried = json.loads(PLAN.read_text(encoding="utf-8"))["tried"].get(recipe.optimizer)
-    if not tried:
-        raise ValueError(
-            f"{PLAN} has no rate for {recipe.optimizer}: try some, and note them there"
-        )
-    rate = float(min(tried, key=tried.get))
+    rate = tuned_rate(PLAN, recipe.optimizer)
     steps, clips = size.steps or recipe.steps, size.training or recipe.clips
     name = f"walker-departures-{name}"
     return replace(recipe, name=name, seed=seed, lr=rate, steps=steps, clips=clips)
@@ -193,5 +182,5 @@ def sweep(size: Size, runs: Path) -> Sweep:
     return Sweep(
         "walker-departures", VARIANTS, trained,
         lambda name, walker, seed: rows_of(walker, size),
-        KINDS, {f"{kind}_minus_{{}}": minus(how) for kind, how in KINDS.items()}, about, (0,),
+        KINDS, differences(KINDS), about, (0,),
     )  # fmt: skip
