@@ -73,20 +73,15 @@ class Schedule:
         """
         s = checked_step(s, self.S, first)
         if not isinstance(s, Tensor):
-            return self._numbers[s]
-        rows = torch.stack(self._tables).to(x.device)[:, s].to(x)
+            return StepNumbers(*self._tables[:, s].tolist())
+        rows = self._tables.to(x.device)[:, s].to(x)
         return StepNumbers(*rows.reshape(len(rows), -1, *[1] * (x.dim() - 1)).unbind())
 
     @cached_property
-    def _tables(self) -> tuple[Table, ...]:
+    def _tables(self) -> Float[Tensor, "6 S_plus_1"]:
         signal, noise = self.alpha_bar.sqrt(), (1 - self.alpha_bar).sqrt()
-        return self.beta, self.alpha, self.alpha_bar, signal, noise, posterior_variance(self)
-
-    @cached_property
-    def _numbers(self) -> list[StepNumbers]:
-        """Read once: a sampler needs them at every step, and a tensor is slow to give a number."""
-        rows = zip(*(table.tolist() for table in self._tables), strict=True)
-        return [StepNumbers(*row) for row in rows]
+        rows = self.beta, self.alpha, self.alpha_bar, signal, noise, posterior_variance(self)
+        return torch.stack(rows)
 
 
 def make_schedule(beta: Float[Tensor, "S"], name: str = "schedule") -> Schedule:
@@ -289,10 +284,9 @@ def p_sample(
     return mean + math.sqrt(variances[variance]) * noise
 
 
-@torch.no_grad()
 def sample_steps(
     denoise: Denoiser,
-    start: Tensor | tuple[int, ...],
+    start: X,
     schedule: Schedule,
     *,
     generator: Generators | None = None,
@@ -300,13 +294,13 @@ def sample_steps(
     variance: str = "beta",
     clip: float | None = None,
 ) -> Iterator[Step]:
-    """Sample from x_S back to x0, yielding S + 1 records, s = S..0; `start` is x_S, or its shape.
+    """Sample from x_S back to x0, yielding S + 1 records, s = S..0; `start` is x_S.
 
     noise[s - 1], if given, is the noise of step s; the last step, s = 1, draws none. `clip`
     clamps x0_hat to [-clip, clip], up to rounding.
     Source: MoDiff Alg. 2. Notebook: 03.
     """
-    x_s = starting_noise(start, generator)
+    x_s = start.detach()
     for s in range(schedule.S, 0, -1):
         step = _denoised(denoise, s, x_s, schedule, clip)
         yield step
@@ -317,28 +311,23 @@ def sample_steps(
 
 def _denoised(denoise: Denoiser, s: int, x_s: X, schedule: Schedule, clip: float | None) -> Step:
     """The step s from x_s, at which the whole batch is."""
-    step = Step(s, x_s, denoise(x_s, torch.full((len(x_s),), s, device=x_s.device)), schedule)
+    with torch.no_grad():
+        eps_hat = denoise(x_s, torch.full((len(x_s),), s, device=x_s.device))
+    step = Step(s, x_s, eps_hat, schedule)
     return step if clip is None else step.clamp_x0(clip)
 
 
-def timesteps(S: int, steps: int) -> list[int]:
-    """Choose `steps` of the S diffusion steps, evenly spaced, S first.
+def timesteps(S: int, steps: int | Sequence[int]) -> list[int]:
+    """The diffusion steps that a sampler visits: so many of S, evenly spaced, or those of a list.
 
     For example, timesteps(100, 4) = [100, 75, 50, 25].
-    Raises ValueError unless 1 <= steps <= S.  Notebook: 03
-    """
-    if not 1 <= steps <= S:
-        raise ValueError(f"the number of steps must be between 1 and {S}, not {steps}")
-    return [S - (i * S) // steps for i in range(steps)]
-
-
-def visited_steps(steps: int | Sequence[int], S: int) -> list[int]:
-    """The steps that a sampler visits: `timesteps(S, steps)`, or those of a list.
-
-    Raises ValueError for steps that do not decrease, or are outside 1..S.
+    Raises ValueError unless 1 <= steps <= S, or for a list that does not fall from S to 1.
+    Notebook: 03
     """
     if isinstance(steps, int | Integral):  # Integral: those of numpy, too
-        return timesteps(S, int(steps))
+        if not 1 <= steps <= S:
+            raise ValueError(f"the number of steps must be between 1 and {S}, not {steps}")
+        return [S - (i * S) // int(steps) for i in range(steps)]
     visited = list(steps)
     falls = visited == sorted(set(visited), reverse=True)
     if not visited or not falls or not 1 <= visited[-1] <= visited[0] <= S:
@@ -383,10 +372,9 @@ def ddim_step(
     return x + sigma * noise
 
 
-@torch.no_grad()
 def ddim_steps(
     denoise: Denoiser,
-    start: Tensor | tuple[int, ...],
+    start: X,
     schedule: Schedule,
     steps: int | Sequence[int] = 10,
     eta: float = 0.0,
@@ -403,8 +391,8 @@ def ddim_steps(
     Raises ValueError for steps that do not decrease or are outside 1..S, and for eta outside 0..1.
     Notebook: 03
     """
-    visited = visited_steps(steps, schedule.S)
-    x_s = starting_noise(start, generator)
+    visited = timesteps(schedule.S, steps)
+    x_s = start.detach()
     for s, after in zip(visited, [*visited[1:], 0], strict=True):
         sigma = ddim_sigma(s, after, schedule, eta)
         step = _denoised(denoise, s, x_s, schedule, clip)
@@ -417,14 +405,6 @@ def ddim_steps(
 def final(loop: Iterable[Record]) -> Record:
     """The last record of a sampling loop. Unlike `*_, last = loop`, it keeps no other."""
     return deque(loop, maxlen=1).pop()
-
-
-def starting_noise(start: Tensor | tuple[int, ...], generator: Generators | None) -> Tensor:
-    """x_S itself, or noise of that shape on the generator's device."""
-    if isinstance(start, Tensor):
-        return start
-    first = generator[0] if isinstance(generator, Sequence) else generator
-    return draw(torch.empty(start, device=first.device if first else None), generator)
 
 
 # ---- the objective -------------------------------------------------------------------------------

@@ -36,7 +36,6 @@ from .ddpm import (
 X = Float[Tensor, "B *shape"]
 
 
-@torch.no_grad()
 def inpaint_steps(
     denoise: Denoiser,
     start: X,
@@ -78,7 +77,8 @@ def inpaint_steps(
             continue
         if some:
             x = torch.where(known, q_sample(given, s, schedule, draw(x, generator)), x)
-        eps_hat = denoise(x, torch.full((len(x),), s, device=x.device))
+        with torch.no_grad():
+            eps_hat = denoise(x, torch.full((len(x),), s, device=x.device))
         step = Step(s, x, eps_hat, schedule)
         yield step
         sigma = ddim_sigma(s, after, schedule, eta)
@@ -91,8 +91,8 @@ def inpaint_steps(
 def resampling_steps(visited: Sequence[int], R: int) -> list[int]:
     """Take every leap but the last R times: forth, back by adding noise, and forth again.
 
-    This lets unknown entries adapt to known ones. resampled([30, 20, 10], 2) = [30, 20, 30, 20, 10,
-    20, 10].
+    This lets unknown entries adapt to known ones. resampling_steps([30, 20, 10], 2) = [30, 20, 30,
+    20, 10, 20, 10].
     Raises ValueError for R under 1.  Source: RePaint (Lugmayr and others, 2022).
     """
     if R < 1:

@@ -196,32 +196,16 @@ class MoDiff(nn.Module):
 
         Raises ValueError if the future has the wrong number of frames.
         """
-        out = self.head(self.attend(self.embed(x_s, s, memory), memory))
-        return out if self.skip is None else out + self.skip[s][:, None, None] * x_s
-
-    def embed(
-        self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"], memory: Memory
-    ) -> Float[Tensor, "B T_p width"]:
-        """The decoder's tokens: each noised pose with its diffusion step and its time.
-
-        Raises ValueError if the future has the wrong number of frames: a single one would be
-        repeated for all of them.
-        """
-        if x_s.shape[1] != self.config.T_p:
+        if x_s.shape[1] != self.config.T_p:  # a single one would be repeated for all of them
             raise ValueError(
                 f"this network predicts {self.config.T_p} future poses, not {x_s.shape[1]}"
             )
         step = memory.steps[s, None].expand(-1, x_s.shape[1], -1)  # one s for all poses
-        x = self.future_in(torch.cat([x_s, step], dim=-1))
-        return x + self.time[self.config.T_h :]
-
-    def attend(
-        self, x: Float[Tensor, "B T_p width"], memory: Memory
-    ) -> Float[Tensor, "B T_p width"]:
-        """The decoder's layers."""
+        x = self.future_in(torch.cat([x_s, step], dim=-1)) + self.time[self.config.T_h :]
         for block, layer in zip(self.decoder, memory.layers, strict=True):
             x = block(x, memory.self_bias, layer, memory.memory_bias)
-        return x
+        out = self.head(x)
+        return out if self.skip is None else out + self.skip[s][:, None, None] * x_s
 
     def forward(
         self,

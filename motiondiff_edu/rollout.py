@@ -3,8 +3,8 @@
 The control can change at every frame.
 
 A *window sampler* is a callable `sample(past (B, T_h, D), control (B, T_h + T_p, C), generator) ->
-(B, T_p, D)` in the network's units. `rollout_steps` repeats it; `generate` does so for a trained
-walker, in metres and m/s.
+(B, T_p, D)` in the network's units. `rollout_steps` repeats it. `generate` does so for a trained
+walker on tensors, in metres and m/s; `Walker.walk`, for a Motion in the world.
 Source: MoDiff III-C, Alg. 2.  Notebook: 08
 """
 
@@ -61,7 +61,7 @@ class AnyWalker(Protocol):
     """The interface of a walker for `generate`: sizes, units, and a window sampler.
 
     `performers.walker.Walker` has it. If there is also a `card` with the range of control in
-    training, `generate` warns beyond that range.
+    training, `generate` warns a little beyond that range, and refuses what is far beyond it.
     """
 
     @property
@@ -208,29 +208,27 @@ def check_range(
     ahead = control[:, T_h - 1 : -1] if hold else control[:, T_h - 1 :]
     far = (low - ahead).maximum(ahead - high)
 
-    def asked(share: float) -> str:
-        """The columns that leave the range by more than a share of it, in words."""
-        beyond, found = far > share * (high - low), []
-        for column in beyond.any(1).any(0).nonzero().flatten().tolist():
-            batch, row = beyond[..., column].nonzero()[0].tolist()
-            name = COLUMNS[column] if column < len(COLUMNS) <= len(low) else f"column {column}"
-            unit = size if name in COLUMNS[:2] else 1.0
-            asks, least, most = (
-                unit * float(x) for x in (ahead[batch, row, column], low[column], high[column])
-            )
-            found.append(
-                f"a {name} of {asks:.3g} in frame {row} of the future "
-                f"(training: {least:.3g} to {most:.3g})"
-            )
-        return "; ".join(found)
-
-    if words := asked(FAR):
+    share = FAR if (far > FAR * (high - low)).any() else SLACK
+    beyond, found = far > share * (high - low), []
+    for column in beyond.any(1).any(0).nonzero().flatten().tolist():
+        batch, row = beyond[..., column].nonzero()[0].tolist()
+        name = COLUMNS[column] if column < len(COLUMNS) <= len(low) else f"column {column}"
+        unit = size if name in COLUMNS[:2] else 1.0
+        asks, least, most = (
+            unit * float(x) for x in (ahead[batch, row, column], low[column], high[column])
+        )
+        found.append(
+            f"a {name} of {asks:.3g} in frame {row} of the future "
+            f"(training: {least:.3g} to {most:.3g})"
+        )
+    words = "; ".join(found)
+    if words and share == FAR:
         raise ValueError(
             "the control leaves the range that this walker was trained on by over half its width: "
             f"{words}. Speeds are in m/s, turning is in rad/s; 90 degrees a second are "
             f"{math.pi / 2:.2f} rad/s"
         )
-    if words := asked(SLACK):
+    if words:
         warnings.warn(
             f"the control asks for more than this walker was trained on, and it will not follow "
             f"well: {words}",

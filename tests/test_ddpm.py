@@ -325,9 +325,9 @@ def test_sampling_yields_every_step_and_repeats_with_its_seed():
     )
 
     def walk():
-        return list(
-            sample_steps(denoise, (4, 3), schedule, generator=torch.Generator().manual_seed(5))
-        )
+        generator = torch.Generator().manual_seed(5)
+        x_S = torch.randn(4, 3, generator=generator)
+        return list(sample_steps(denoise, x_S, schedule, generator=generator))
 
     first, second = walk(), walk()
     assert [step.s for step in first] == list(range(13, -1, -1))
@@ -355,9 +355,8 @@ def test_exact_denoiser_samples_have_the_mixtures_mean_variance_and_weights():
     )
     schedule = cosine_schedule(200)
     generator = torch.Generator().manual_seed(2)
-    *_, last = sample_steps(
-        exact_denoiser(truth, schedule), (8000, 2), schedule, generator=generator
-    )
+    x_S = torch.randn(8000, 2, generator=generator)
+    *_, last = sample_steps(exact_denoiser(truth, schedule), x_S, schedule, generator=generator)
     x = last.x_s.double()
     torch.testing.assert_close(x.mean(0), truth.mean(), atol=0.04, rtol=0)
     torch.testing.assert_close(x.T.cov(), truth.covariance(), atol=0.05, rtol=0)

@@ -107,9 +107,8 @@ def test_dataset_denoiser_gives_back_its_data():
     generator = torch.Generator().manual_seed(6)
     schedule = cosine_schedule(60)
     data = torch.randn(7, 5, 3, generator=generator)
-    *_, last = sample_steps(
-        dataset_denoiser(data, schedule), (40, 5, 3), schedule, generator=generator
-    )
+    x_S = torch.randn(40, 5, 3, generator=generator)
+    *_, last = sample_steps(dataset_denoiser(data, schedule), x_S, schedule, generator=generator)
     distance = torch.cdist(last.x_s.flatten(1).double(), data.flatten(1).double()).min(1)
     assert distance.values.max() < 1e-3 and len(distance.indices.unique()) > 3
 

@@ -9,7 +9,7 @@ import torch
 
 from data_synth.walking import walk
 from motiondiff_edu.motion.motion import Motion
-from motiondiff_edu.pretrained.checkpoints import pretrained
+from motiondiff_edu.pretrained.checkpoints import load
 from motiondiff_edu.rollout import check_range, generate
 
 WALKER = SimpleNamespace(config=SimpleNamespace(T_h=4, T_p=2, D=6, C=3))
@@ -38,7 +38,7 @@ def test_past_and_control_that_do_not_fit_are_named(past, control, told):
 
 def test_arrays_are_taken_as_they_are_and_the_same_walk_comes_back():
     clip = walk(np.tile([1.0, 0.0, 0.2], (14, 1)), seed=5)
-    walker, past = pretrained("walker"), clip.features()[:10]
+    walker, past = load("walker"), clip.features()[:10]
     new = generate(walker, past, clip.control, seed=1, steps=3)  # float32 poses, float64 control
     same = generate(
         walker, torch.from_numpy(past), torch.from_numpy(clip.control).float(), seed=1, steps=3
@@ -53,11 +53,11 @@ def test_a_control_beyond_the_training_is_named_by_the_frame_that_it_leads_to():
     control[3] = 40.0
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        generate(pretrained("walker"), clip.features()[:10], control, steps=1)
+        generate(load("walker"), clip.features()[:10], control, steps=1)
     control[12] = 40.0
     with pytest.raises(ValueError, match="a forward speed of 40 in frame 3 of the future"):
-        generate(pretrained("walker"), clip.features()[:10], control, steps=1)
-    seen = pretrained("walker").card["control_range"]
+        generate(load("walker"), clip.features()[:10], control, steps=1)
+    seen = load("walker").card["control_range"]
     with pytest.raises(ValueError, match="a forward speed of 20 in frame 3 .*rate of 40 "):
         check_range(torch.from_numpy(control).float()[None], 10, seen, size=0.5)
 
@@ -75,7 +75,7 @@ def test_own_columns_leave_the_others_their_names():
 
 def test_a_small_figure_is_told_of_its_own_speeds():
     motion = Motion(0.6 * walk(np.tile([1.0, 0.0, 0.0], (40, 1)), seed=5).world(), 20.0)
-    walker = pretrained("walker")
+    walker = load("walker")
     with pytest.raises(ValueError, match=r"a forward speed of 6 in frame .*to 1\.8"):
         walker.walk(motion, np.tile([6.0, 0.0, 0.0], (20, 1)), steps=1)
     assert walker.card["control_range"], "the walker itself stays as it was"

@@ -42,7 +42,7 @@ from motiondiff_edu.widgets.player import Player
 from data_synth import mixtures
 import numpy as np
 
-models = {n: checkpoints.pretrained(n).model for n in checkpoints.available()}
+models = {n: checkpoints.load(n).model for n in checkpoints.available()}
 walkers = {n: sum(p.numel() for p in model.parameters()) for n, model in models.items()}
 player = Player(np.zeros((2, 21, 3)))
 root, mine = places.place_for_students()

@@ -72,8 +72,8 @@ def _segment(found: list, words: str, end: int) -> tuple[float, float, float, fl
         (number, at), *rest = rest
         values[column] = sign * _number(number, words, at)
         filled.add(column)
-    forward, left, turn, seconds = values
-    return forward, left, turn, seconds
+    seconds, forward, left, turn = values
+    return seconds, forward, left, turn
 
 
 def _number(text: str, words: str, at: int) -> float:

@@ -224,7 +224,7 @@ def hearing() -> Finding:
 
 def weights() -> Finding:
     """The shipped weights can be read."""
-    from ..pretrained.checkpoints import available, pretrained
+    from ..pretrained.checkpoints import available, load
 
     if "walker" not in available():
         return Finding(
@@ -232,7 +232,7 @@ def weights() -> Finding:
             "no walker in pretrained/",
             "install again, or type make pretrained (this takes hours)",
         )
-    parameters = sum(parameter.numel() for parameter in pretrained("walker").model.parameters())
+    parameters = sum(parameter.numel() for parameter in load("walker").model.parameters())
     return Finding("weights", f"walker, {parameters / 1e6:.1f} million parameters")
 
 

@@ -1,6 +1,6 @@
 """Faults of a capture: joints that move faster than any actor, as when markers are exchanged.
 
-The result is a mask, so the faults can be repaired: `editing.inbetween.inbetween(dancer,
+The result is a mask, so the faults can be repaired: `editing.inbetween.inbetween(inbetweener,
 clip.world(), ~clip.info["wild"])`. A joint can be wrong without moving fast. To be safe, repair
 whole frames: `np.repeat(wild.any(1, keepdims=True), 21, 1)`.
 Notebook: 10

@@ -144,20 +144,12 @@ def ankles_dragged(
     check_target(heel, targets)
     if not len(poses):
         return np.array(poses)
-    chain = chain_to(heel)
-    places = limbs_bent(poses[:, chain], targets, bends_to(poses, chain[0]))
+    hip, knee, toe = heel - 2, heel - 1, heel + 1
+    places = limbs_bent(poses[:, [hip, knee, heel]], targets, bends_to(poses, hip))
     moved = np.array(poses)
-    foot = [heel, *descendants(heel)]
-    moved[:, foot] += (places[:, 2] - poses[:, heel])[:, None]
-    moved[:, chain[1:]] = places[:, 1:]
+    moved[:, [knee, heel]] = places[:, 1:]
+    moved[:, toe] += places[:, 2] - poses[:, heel]
     return moved
-
-
-def ankles_moved(
-    poses: Float[np.ndarray, "T 21 3"], heel: int, by: Float[np.ndarray, "T 3"]
-) -> Float[np.ndarray, "T 21 3"]:
-    """The same, by so much (metres) from where each ankle is."""
-    return ankles_dragged(poses, heel, poses[:, heel] + by)
 
 
 def tow_limb(

@@ -60,13 +60,15 @@ class Motion:
         values: dict[str, Any] = {
             "fps": fps,
             "positions": _positions(self.positions, self.skeleton),
-            "source": "" if self.source is None else _writable(str(self.source)),
-            "sample_rate": _whole(self.sample_rate),
+            # with ? for what UTF-8 cannot write: a byte of a file's name that is not UTF-8
+            "source": str(self.source or "").encode("utf-8", "replace").decode(),
         }
         T = len(values["positions"])
-        values["root"] = _continuous(_per_frame(self.root, "root", (T, 3), np.float64))
+        values["root"] = root = _per_frame(self.root, "root", (T, 3), np.float64)
+        if root is not None:
+            root[:, 2] = np.unwrap(root[:, 2])
         values["contacts"] = _per_frame(self.contacts, "contacts", (T, 2), bool)
-        values["audio"] = _sound(self.audio, values["sample_rate"])
+        values["audio"], values["sample_rate"] = _sound(self.audio, self.sample_rate)
         for name, value in values.items():
             object.__setattr__(self, name, value)
 
@@ -280,7 +282,7 @@ class Motion:
     def check_size(self) -> None:
         """Raise MotionError if the figure is not about as large as the course's, in metres.
 
-        A MotionWarning says where it lies down in most frames: its axes may be others.
+        A MotionWarning says if it lies down in most frames: its axes may be others.
         """
         words = unlike_a_body(self.positions, self.skeleton)
         if words:
@@ -397,31 +399,16 @@ def _per_frame(values, name: str, shape: tuple[int, int], dtype: type) -> np.nda
     return array
 
 
-def _writable(text: str) -> str:
-    """The text with ? for what UTF-8 cannot write: a byte of a file's name that is not UTF-8."""
-    return text.encode("utf-8", "replace").decode("utf-8")
-
-
-def _whole(sample_rate: Any) -> int | None:
-    """A sample rate as an int.  Raises MotionError for what is no whole number."""
-    if sample_rate is None:
-        return None
-    if not is_number(sample_rate) or sample_rate != sample_rate // 1:
-        raise MotionError(f"sample_rate must be a whole number of hertz, not {sample_rate!r:.40}")
-    return int(sample_rate)
-
-
-def _continuous(root: np.ndarray | None) -> np.ndarray | None:
-    """The root without jumps by whole turns, such as from pi to -pi or where two motions join."""
-    if root is not None:
-        root[:, 2] = np.unwrap(root[:, 2])
-    return root
-
-
-def _sound(audio, sample_rate: int | None) -> np.ndarray | None:
-    """A copy in float32.  Raises MotionError unless it is finite mono sound."""
+def _sound(audio, sample_rate: Any) -> tuple[np.ndarray | None, int | None]:
+    """A copy in float32, and its rate.  Raises MotionError unless it is finite mono sound."""
+    if sample_rate is not None:
+        if not is_number(sample_rate) or sample_rate != sample_rate // 1:
+            raise MotionError(
+                f"sample_rate must be a whole number of hertz, not {sample_rate!r:.40}"
+            )
+        sample_rate = int(sample_rate)
     if audio is None:
-        return None
+        return None, sample_rate
     if sample_rate is None:
         raise MotionError(
             "audio needs its sample_rate in Hz, such as 44100: its samples do not say how fast "
@@ -436,4 +423,4 @@ def _sound(audio, sample_rate: int | None) -> np.ndarray | None:
             f"audio must be one channel of finite samples (N,) and sample_rate at least 1 Hz, not "
             f"{array.shape} at {sample_rate}"
         )
-    return array
+    return array, sample_rate

@@ -18,15 +18,16 @@ from torch import Tensor
 
 from ..conditions.control import splice
 from ..metrics.keyframes import AROUND, seam_step
+from ..motion.check import lies_down
 from ..motion.cleanup import clean_up
 from ..motion.motion import Motion, MotionError
 from ..motion.planting import SHANK, THIGH
-from ..motion.root_frame import FPS, root_path, to_world
+from ..motion.root_frame import FPS, root_path, to_root_frame, to_world
 from ..motion.skeleton import JOINTS, PARENTS, J, joint_index
 from ..rollout import Units
 
-# m in a frame more than in the two frames on either side: a jump at the seam that is said; from a
-# synthetic walk no joint goes 3 cm farther
+# m: a joint that goes this much farther at the seam than in the frames beside it is said to jump;
+# after synthetic walks it is under 3 cm
 FAR = 0.25
 # standard deviations of the training, over the coordinates of a joint; no frame of 120 unseen
 # synthetic walks is as far (at most 4.64)
@@ -44,32 +45,39 @@ class Start:
     past     its last frames in the root frame
     control  of these frames and of those to come
     path     of the root on the ground under this control
+    size     of the figure, over the course's; all of the above are in metres of the course's figure
     """
 
     given: Float[np.ndarray, "N 21 3"]
     past: Float[np.ndarray, "T_h 21 3"]
     control: Float[np.ndarray, "T 3"]
     path: Float[np.ndarray, "T 3"]
+    size: float = 1.0
 
     @classmethod
     def of(cls, motion: Motion, control: Float[np.ndarray, "n 3"], T_h: int) -> "Start":
         """From the last T_h frames of a motion at 20 frames/s on.  Raises MotionError for fewer."""
+        if words := lies_down(motion.positions, motion.skeleton):
+            raise MotionError(f"{motion.name}: {words}")
+        motion.check_whole()
+        size = leg_size(motion.positions)
+        motion = resize_motion(motion.resampled(FPS), 1 / size)
         before = motion.path()
-        clip = replace(motion, root=before).to_clip()
-        if len(clip) < T_h:
+        if len(motion) < T_h:
             raise MotionError(
-                f"{motion.name} has {len(clip)} frames; the walker needs at least {T_h} "
+                f"{motion.name} has {len(motion)} frames; the walker needs at least {T_h} "
                 f"({T_h / FPS:g} s) to continue it"
             )
-        rows = splice(clip.control, control, T_h)
+        poses, given = to_root_frame(motion.positions, before[:, :2], before[:, 2])
+        rows = splice(given, control / [size, size, 1.0], T_h)
         place, heading = root_path(rows, tuple(before[-T_h]))
         path = np.column_stack([place, heading])
-        return cls(motion.positions, clip.poses[-T_h:], rows, path)
+        return cls(motion.positions, poses[-T_h:], rows, path, size)
 
     def in_world(self, new: Float[np.ndarray, "n 21 3"]) -> Float[np.ndarray, "n 21 3"]:
         """New frames of the root frame, placed in the world."""
-        whole = to_world(np.concatenate([self.past, new]), self.control, tuple(self.path[0]))
-        return whole[len(self.past) :]
+        first = len(self.past)
+        return to_world(new, self.control[first:], tuple(self.path[first]))
 
 
 def finish_continuation(
@@ -120,21 +128,15 @@ def change_of(control: Float[np.ndarray, "T 3"]) -> float:
     )
 
 
-def in_words(
-    jump: float,
-    unlike: dict[str, float],
-    height: float = 0.0,
-    change: float = 0.0,
-    size: float = 1.0,
-) -> str:
+def in_words(start: Start, jump: float, unlike: dict[str, float]) -> str:
     """What there is to say about a continuation; "" if there is nothing.
 
     jump    of the joint that would go farthest, in metres of a figure of the course's size
-    height  of the lowest joint of the last given pose (m)
-    change  `change_of` the control, from the last given frames on, for that size as well
-    size    of the figure, over the course's: what is said is in its own metres
+    What is said is in metres of the figure itself.
     """
-    words = []
+    words, size = [], start.size
+    height = size * start.given[-1, :, 1].min()
+    change = change_of(start.control[len(start.past) - 2 :])
     if change > SUDDEN:
         words.append(
             f"the control changes by {size * change:.1f} m/s within half a second, faster than any "

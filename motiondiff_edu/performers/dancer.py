@@ -140,7 +140,9 @@ class Dancer(Performer):
 
     def _to(self, music: Music | None, frames: int) -> Denoiser:
         """The denoiser for music that the network has listened to already."""
-        return self._denoiser(self.model.decode, self._encoded(self.model.encode, music, frames))
+        with evaluating(self.model), torch.no_grad():
+            memory = self.model.encode(music, frames)
+        return self._denoiser(self.model.decode, memory)
 
     def _clamped(self, denoise: Denoiser) -> Denoiser:
         if self.config.target != "eps":

@@ -56,12 +56,12 @@ class Config(Protocol):
 
 @runtime_checkable
 class WalkerConfig(Config, Sizes, Protocol):
-    """The same, and the frames given (T_h) and predicted (T_p)."""
+    """`Config`, and the frames given (T_h) and predicted (T_p)."""
 
 
 @runtime_checkable
 class MoverConfig(Config, Protocol):
-    """The same, and the words that the network knows."""
+    """`Config`, and the words that the network knows."""
 
     @property
     def words(self) -> tuple[str, ...]: ...

@@ -61,7 +61,7 @@ def sample_motion(
 @contextmanager
 def evaluating(model: AnyNetwork) -> Iterator[None]:
     """The network without dropout; afterwards the parts that were in training mode are so again."""
-    # not every time: a change visits every layer
+    # only where a part is in training mode: eval() visits every layer
     training = [part for part in model.modules() if part.training] if model.training else []
     if training:
         model.eval()
@@ -115,12 +115,6 @@ class Performer:
     @property
     def config(self) -> Config:
         return self.model.config
-
-    @torch.no_grad()
-    def _encoded(self, encode: Callable, *condition):
-        """What the network computes of a condition, once for all steps; without dropout."""
-        with evaluating(self.model):
-            return encode(*condition)
 
     def _denoiser(self, network: Callable[..., Tensor], *given) -> Denoiser:
         """`network(x_s, s, *given)` in evaluation mode, as a denoiser: it returns eps_hat."""

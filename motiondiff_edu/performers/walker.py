@@ -14,37 +14,27 @@ from torch import Tensor
 
 from .. import rollout
 from ..conditions.control import as_long
-from ..ddpm import Denoiser, Generators, ddim_steps, draw, final, sample_steps
+from ..ddpm import Denoiser, Generators, ddim_steps, draw, sample_steps
 from ..modiff import MoDiff, MoDiffConfig
-from ..motion.check import lies_down
 from ..motion.checks import checked_samples, checked_seconds, checked_steps
-from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
+from ..motion.motion import Motion, MotionWarning, as_motion
 from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 from ..motion.skeleton import J
 from ..rollout import WindowSampler
 from .continuation import (
     Start,
-    change_of,
     finish_continuation,
     in_words,
-    leg_size,
     resize_motion,
     unlike_training,
 )
 from .networks import WalkerConfig, WalkerNetwork, register
-from .performer import Performer, bar, generators
+from .performer import Performer, bar, evaluating, generators
 
 STEPS = 10  # default of DDIM: as good as DDPM with all steps, and ten times as fast (RESULTS)
 
 register("walker", MoDiff, MoDiffConfig)
-
-
-def check_upright(motion: Motion) -> None:
-    """Raise MotionError unless it is a whole figure of the course's skeleton that does not lie."""
-    motion.check_whole()
-    if words := lies_down(motion.positions):
-        raise MotionError(f"{motion.name}: {words}")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -89,27 +79,24 @@ class Walker(Performer):
         samples  above 1: a list with this many continuations; the first is that of samples=1
         steps    of DDIM, or None for DDPM with all steps, and noise of variance beta_s
         Raises MotionError for a motion that cannot be continued, ValueError for numbers out of
-        range. Warns where control or poses go beyond the training data, and where poses are off the
-        floor, or the figure would jump: then the first half second or more is blended.
+        range. Warns where control or poses go beyond the training data, where poses are off the
+        floor, and where a joint would jump from the last pose.
         Source: MoDiff Alg. 2.  Notebook: 00
         """
-        check_upright(as_motion(motion))
         count, T_h = checked_samples(samples), self.config.T_h
         steps = checked_steps(steps, self.schedule.S)
         length = None if seconds is None else round(checked_seconds(seconds) * FPS)
-        size = leg_size(motion.positions)
         ahead = as_long(control, length, self.config.C)
-        ahead[:, :2] /= size
-        start = Start.of(resize_motion(motion.resampled(FPS), 1 / size), ahead[:, :3], T_h)
+        start = Start.of(as_motion(motion), ahead[:, :3], T_h)
         own = np.concatenate([ahead[:1, 3:].repeat(T_h, axis=0), ahead[:, 3:]])
         past = torch.from_numpy(start.past).float().flatten(1)
         steer = torch.from_numpy(np.hstack([start.control, own])).float()
-        rollout.check_range(steer[None], T_h, self.card.get("control_range"), size)
-        poses, velocities = self._in_units(past, steer, count)
+        rollout.check_range(steer[None], T_h, self.card.get("control_range"), start.size)
+        device = self.pose_scaler.mean.device
         loop = rollout.rollout_steps(
             self.window_sampler(steps),
-            poses,
-            velocities,
+            self.pose_scaler.transform(past.to(device)).expand(count, -1, -1),
+            self.control_scaler.transform(steer.to(device)).expand(count, -1, -1),
             len(ahead),
             self.config.T_p,
             generator=generators(seed, count),
@@ -118,36 +105,24 @@ class Walker(Performer):
         new = self.pose_scaler.inverse(torch.stack([frame.pose for frame in loop], dim=1))
         drawn = new.double().cpu().numpy().reshape(count, -1, J, 3)
         both = [finish_continuation(start, one) for one in drawn]
-        if words := self._doubts(start, past, max(jump for _, jump in both), size):
+        jump, unlike = max(jump for _, jump in both), unlike_training(self.pose_scaler, past)
+        if words := in_words(start, jump, unlike):
             warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
         path, name = start.path[T_h:], f"{motion.name}, continued"
         made = [
-            resize_motion(Motion(world, FPS, root=path, source=name), size) for world, _ in both
+            resize_motion(Motion(world, FPS, root=path, source=name), start.size)
+            for world, _ in both
         ]
         return made if samples > 1 else made[0]
-
-    def _doubts(self, start: Start, past: Float[Tensor, "T_h D"], jump: float, size: float) -> str:
-        """What there is to say about a continuation of a figure of this size (`in_words`)."""
-        unlike = unlike_training(self.pose_scaler, past)
-        height = size * start.given[-1, :, 1].min()
-        change = change_of(start.control[len(past) - 2 :])
-        return in_words(jump, unlike, height, change, size)
-
-    def _in_units(
-        self, past: Float[Tensor, "T_h D"], control: Float[Tensor, "T C"], samples: int
-    ) -> tuple[Float[Tensor, "B T_h D"], Float[Tensor, "B T C"]]:
-        """Past and control in the network's units, on its device, once for each sample."""
-        device = self.pose_scaler.mean.device
-        poses = self.pose_scaler.transform(past.to(device))
-        velocities = self.control_scaler.transform(control.to(device))
-        return poses.expand(samples, -1, -1), velocities.expand(samples, -1, -1)
 
     def denoiser(self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]) -> Denoiser:
         """`denoise(x_s, s) -> eps_hat` for this past and control, in the network's units.
 
         Past and control are encoded here, once; each call decodes.
         """
-        return self._denoiser(self.model.decode, self._encoded(self.model.encode, past, control))
+        with evaluating(self.model), torch.no_grad():
+            memory = self.model.encode(past, control)
+        return self._denoiser(self.model.decode, memory)
 
     def window_sampler(self, steps: int | None = None) -> WindowSampler:
         """A function that draws a window of T_p poses: DDPM with all steps, or DDIM with `steps`.
@@ -155,15 +130,15 @@ class Walker(Performer):
         Notebook: 08
         """
 
-        @torch.inference_mode()
         def sample(past: Tensor, control: Tensor, generator: Generators) -> Tensor:
-            denoise = self.denoiser(past, control)
-            x_S = draw(past.new_empty(len(past), self.config.T_p, self.config.D), generator)
-            if steps is None:
-                loop = sample_steps(denoise, x_S, self.schedule, generator=generator)
-            else:
-                loop = ddim_steps(denoise, x_S, self.schedule, steps, generator=generator)
-            return final(loop).x_s
+            with torch.inference_mode():
+                denoise = self.denoiser(past, control)
+                x_S = draw(past.new_empty(len(past), self.config.T_p, self.config.D), generator)
+                if steps is None:
+                    loop = sample_steps(denoise, x_S, self.schedule, generator=generator)
+                else:
+                    loop = ddim_steps(denoise, x_S, self.schedule, steps, generator=generator)
+                *_, last = loop
+            return last.x_s.clone()  # a copy made outside of inference mode can be changed in place
 
-        # a copy made outside of inference mode can be changed in place
-        return lambda *inputs: sample(*inputs).clone()
+        return sample

@@ -49,7 +49,6 @@ __all__ = [
     "load",
     "load_dancer",
     "load_walker",
-    "pretrained",
     "save",
 ]
 
@@ -148,9 +147,16 @@ def load(name: str | Path, clip: ClipModel | str | Path | None = None) -> AnyPer
     path = Path(str(name))
     if path.suffix or path.parent.name:
         return _read(path, *KINDS, clip=clip)
-    if clip is not None and str(name) in available():
+    files, name = available(), str(name)
+    if name not in files:
+        there = ", ".join(files) or "none (run make pretrained)"
+        near = get_close_matches(name.lower(), files, n=1)
+        meant = f". Did you mean {near[0]!r}?" if near else ""
+        raise CheckpointError(f"no weights are called {name!r}; there are: {there}{meant}")
+    if clip is not None:
         raise CheckpointError(f"the shipped {name!r} does not read by CLIP: leave `clip` out")
-    return pretrained(str(name))
+    path = files[name]
+    return copy.deepcopy(_kept(path, path.stat().st_mtime_ns))
 
 
 def load_walker(path: str | Path) -> Walker:
@@ -244,21 +250,6 @@ def card_of(metadata: dict[str, str]) -> dict:
 def available() -> dict[str, Path]:
     """The shipped weights: {name: file}."""
     return {path.stem: path for path in sorted(FOLDER.glob("*.safetensors"))}
-
-
-def pretrained(name: str = "walker") -> AnyPerformer:
-    """Shipped weights by name: "walker" walks, "dancer" dances; `available` has all names.
-
-    Raises CheckpointError with the names there are.
-    """
-    files = available()
-    if name not in files:
-        there = ", ".join(files) or "none (run make pretrained)"
-        near = get_close_matches(name.lower(), files, n=1)
-        meant = f". Did you mean {near[0]!r}?" if near else ""
-        raise CheckpointError(f"no weights are called {name!r}; there are: {there}{meant}")
-    path = files[name]
-    return copy.deepcopy(_kept(path, path.stat().st_mtime_ns))
 
 
 @lru_cache(maxsize=8)

@@ -183,10 +183,10 @@ def _warn_of_glides(motion: Motion, made: list[Float[np.ndarray, "T 21 3"]]) -> 
         )
 
 
-@lru_cache(maxsize=4)  # nobody else gets them, so they need not be copied each time
+@lru_cache(maxsize=4)  # nobody else gets them, so one copy serves all verbs
 def _shipped(kind: type[P]) -> P:
     """The shipped performer of the usual name."""
-    made = checkpoints.pretrained(kind.__name__.lower())
+    made = checkpoints.load(kind.__name__.lower())
     assert isinstance(made, kind)
     return made
 

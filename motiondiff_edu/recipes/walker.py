@@ -210,8 +210,7 @@ def prepared(recipe: WalkerRecipe, clips: list[Clip]) -> Prepared:
 def loss_of(
     recipe: WalkerRecipe, windows: Windows, schedule: Schedule, dropout: Dropout | None = None
 ) -> LossFn:
-    """Algorithm 1 of windows that are drawn: part of them hold their control, all pasts are noised.
-    """
+    """Algorithm 1 of drawn windows: part of them hold their control, and all pasts are noised."""
     change = typical_change(windows)[0]
 
     def loss_fn(model: Any, generator: torch.Generator) -> Tensor:

@@ -87,7 +87,7 @@ def test_a_network_without_music_and_a_step_too_far_are_named():
         maps(C=0)
     with pytest.raises(ValueError, match="has a HearingTransformer"):
         attention_on_beats.attention_maps(
-            checkpoints.pretrained("regression"), torch.zeros(50, 80), np.zeros((50, 21, 3)), 5
+            checkpoints.load("regression"), torch.zeros(50, 80), np.zeros((50, 21, 3)), 5
         )
     with pytest.raises(ValueError, match="1 to 12, not 13"):
         maps(s=13)
@@ -148,7 +148,7 @@ def test_notebook_12_dances_to_an_upload_and_says_what_is_wrong_with_it(monkeypa
     A button's error reaches nobody, so the cells are run here, with a small dancer.
     """
     soundfile = pytest.importorskip("soundfile")
-    monkeypatch.setattr(checkpoints, "pretrained", lambda name: dancer(S=20))
+    monkeypatch.setattr(checkpoints, "load", lambda name: dancer(S=20))
     path = next(path for path in notebook_cells.sources() if path.name.startswith("12"))
     cells = [
         c

@@ -77,7 +77,7 @@ def test_where_the_motion_stands_and_faces_does_not_matter(known):
 
 def test_blending_and_guidance_close_the_seam(monkeypatch):
     truth, known = clip(), gap(40, 12, 14)
-    one = checkpoints.pretrained("unconditional")
+    one = checkpoints.load("unconditional")
 
     def made(steer, mask=known, **how):
         how = {"samples": 2, "steps": 5, "generator": seeded(4)} | how

@@ -63,7 +63,7 @@ def test_the_swapped_markers_are_mended(real_data, whole):
         clip = load_clip(real_data / "bvh" / "cmu_acrnn_salsa_10.bvh")
     before, wild = clip.world(), clip.info["wild"]
     known = ~np.repeat(wild.any(1, keepdims=True), 21, axis=1) if whole else ~wild
-    network = checkpoints.pretrained("unconditional")
+    network = checkpoints.load("unconditional")
     draw = torch.Generator().manual_seed(0)
     how = {"samples": 3, "steps": 25, "generator": draw, "steer": guide_and_blend}
     draws = clean_samples(inpaint(network, before, known, **how), known)

@@ -22,7 +22,7 @@ from motiondiff_edu.motion.cleanup import (
     toe_path,
 )
 from motiondiff_edu.motion.directions import UP
-from motiondiff_edu.motion.inverse_kinematics import ankles_moved
+from motiondiff_edu.motion.inverse_kinematics import ankles_dragged
 from motiondiff_edu.motion.skeleton import HEELS, TOES
 
 FPS = 20.0
@@ -162,7 +162,8 @@ def test_feet_that_pass_too_low_are_lifted_and_no_longer_seem_to_slide(clip):
     low = np.array(world)
     for toe, heel in zip(TOES, HEELS, strict=True):
         down = 0.9 * np.maximum(world[:, toe, 1] - 0.005, 0)[:, None] * [0.0, 1.0, 0.0]
-        low = ankles_moved(low, heel, np.where(world[:, toe, 1:2] < 0.005, 0.02, 0) * UP - down)
+        by = np.where(world[:, toe, 1:2] < 0.005, 0.02, 0) * UP - down
+        low = ankles_dragged(low, heel, low[:, heel] + by)
     lifted = lock_feet(low, np.zeros(low.shape[:2], bool), FPS)
     still = np.zeros((len(low), 3))
     assert skating(low, still) > 0.5 and skating(lifted, still) < 0.3 * skating(low, still)
@@ -192,7 +193,7 @@ def test_a_leg_follows_the_place_that_its_toe_keeps(clip):
     made, known = np.array(given), np.zeros((41, 21), bool)
     known[[0, -1]] = True
     away = np.sin(np.linspace(0, np.pi, 41))[:, None] * [0.0, 0.15, 0.05]
-    made = ankles_moved(made, HEELS[0], away)
+    made = ankles_dragged(made, HEELS[0], made[:, HEELS[0]] + away)
     locked = lock_feet(made, known, FPS)
     assert np.linalg.norm(made[:, TOES[0]] - given[:, TOES[0]], axis=-1).max() > 0.1
     np.testing.assert_allclose(locked[:, TOES[0]], given[:, TOES[0]], atol=2e-3)

@@ -15,7 +15,7 @@ from motiondiff_edu.motion.formats.bvh.write import write_bvh
 from motiondiff_edu.motion.retarget import load_clip
 from motiondiff_edu.motion.root_frame import to_world
 from motiondiff_edu.motion.skeleton import JOINTS
-from motiondiff_edu.pretrained.checkpoints import available, pretrained
+from motiondiff_edu.pretrained.checkpoints import available, load
 from motiondiff_edu.rollout import generate
 
 SECONDS = 10
@@ -24,7 +24,7 @@ SECONDS = 10
 @pytest.mark.skipif("walker" not in available(), reason="no walker is shipped: run make pretrained")
 def test_a_real_clip_goes_on_under_new_control_and_comes_back_from_its_file(real_data, tmp_path):
     clip = load_clip(real_data / "bvh" / "cmu_02_01_walk.bvh")
-    walker, T_h = pretrained("walker"), pretrained("walker").config.T_h
+    walker, T_h = load("walker"), load("walker").config.T_h
     ahead = joystick([(3, 1.2, 0.0, 0.0), (3, 1.0, 0.0, 0.5), (4, 1.4, 0.0, -0.3)])[: SECONDS * 20]
     control = splice(clip.control, ahead, T_h)
     past = torch.from_numpy(clip.features()[-T_h:])

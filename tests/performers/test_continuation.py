@@ -146,21 +146,28 @@ def test_joints_that_are_far_from_the_training_come_farthest_first():
     assert list(unlike_training(Scaler.nothing(63), past, known)) == [JOINTS[4]]
 
 
+def begins(height: float = 0.0, size: float = 1.0) -> Start:
+    """A start whose lowest joint is at this height, of a figure of this size."""
+    given = np.full((1, 21, 3), height)
+    return Start(given, np.zeros((10, 21, 3)), np.zeros((20, 3)), np.zeros((20, 3)), size)
+
+
 def test_what_is_said():
-    assert in_words(JUMP, {}) == ""
-    far = in_words(0.2, {"Head": 6.0})
+    start = begins()
+    assert in_words(start, JUMP, {}) == ""
+    far = in_words(start, 0.2, {"Head": 6.0})
     assert "blended" not in far and "Head 6.0" in far
-    assert in_words(0.31, {}) == (
+    assert in_words(start, 0.31, {}) == (
         "a joint would jump by 31 cm from the last pose, so the first frames are blended"
     )
-    assert "by 15 cm" in in_words(0.3, {}, size=0.5), "in metres of the figure itself"
-    assert "at" not in in_words(0.0, {}, OFF_FLOOR)
-    assert in_words(0.01, {}, 0.84) == (
+    assert "by 15 cm" in in_words(begins(size=0.5), 0.3, {}), "in metres of the figure itself"
+    assert "at" not in in_words(begins(OFF_FLOOR), 0.0, {})
+    assert in_words(begins(1.68, 0.5), 0.01, {}) == (
         "the last pose is 0.84 m off the floor, and the walker comes down to it"
     )
-    assert "unlike" not in in_words(0.2, {}), "no joint is far from the training"
+    assert "unlike" not in in_words(start, 0.2, {}), "no joint is far from the training"
     four = {name: 9.0 for name in JOINTS[:4]}
-    assert JOINTS[3] not in in_words(0.2, four)
+    assert JOINTS[3] not in in_words(start, 0.2, four)
 
 
 def test_a_control_that_no_walk_follows_is_said(walker, usual):

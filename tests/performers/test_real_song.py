@@ -9,7 +9,7 @@ import pytest
 from motiondiff_edu.metrics.bodies import bone_rmse, repeat_score
 from motiondiff_edu.motion.formats.bvh import read_bvh
 from motiondiff_edu.motion.formats.bvh.write import write_bvh
-from motiondiff_edu.pretrained.checkpoints import available, pretrained
+from motiondiff_edu.pretrained.checkpoints import available, load
 
 SECONDS = 12
 
@@ -23,7 +23,7 @@ def speed(dance: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("song", ["vibe_ace", "nutcracker"])
 def test_a_recorded_song_is_danced_to_by_a_body_that_moves_throughout(song, real_data, tmp_path):
     file = real_data / "audio" / f"{song}.ogg"
-    made = pretrained("dancer").dance(file, seconds=SECONDS, seed=1)
+    made = load("dancer").dance(file, seconds=SECONDS, seed=1)
     dance = made.positions
     assert dance.shape == (SECONDS * 20, 21, 3) and len(made.audio) == SECONDS * 16_000
 
@@ -39,7 +39,7 @@ def test_a_recorded_song_is_danced_to_by_a_body_that_moves_throughout(song, real
     assert np.abs(dance[:, 0, [0, 2]]).max() < 4  # metres: it does not wander off
     assert repeat_score(dance) < 0.98  # no loop
 
-    other = pretrained("dancer").dance(file, seconds=SECONDS, seed=2).positions
+    other = load("dancer").dance(file, seconds=SECONDS, seed=2).positions
     assert np.abs(other - dance).mean() > 0.05  # metres: another seed, another dance
     report = write_bvh(tmp_path / "dance.bvh", dance)
     assert (

@@ -24,7 +24,6 @@ from motiondiff_edu.pretrained.checkpoints import (
     available,
     load,
     load_walker,
-    pretrained,
     save,
 )
 
@@ -185,27 +184,27 @@ def test_the_card_lies_beside_it_and_no_temporary_file_stays(saved: Path):
 def test_shipped_weights_have_their_files_names(saved: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(checkpoints, "FOLDER", saved.parent)
     assert available() == {"tiny": saved}
-    assert pretrained("tiny").card["name"] == "tiny"
+    assert load("tiny").card["name"] == "tiny"
     assert checkpoints.load(Path("tiny")).card == checkpoints.load("tiny").card
     with pytest.raises(CheckpointError, match="no weights are called 'dancer'; there are: tiny$"):
-        pretrained("dancer")
+        load("dancer")
 
 
 def test_shipped_weights_are_read_once(saved: Path, monkeypatch: pytest.MonkeyPatch):
     reads, opened = [], weights_file._opened
     monkeypatch.setattr(weights_file, "_opened", lambda path: reads.append(path) or opened(path))
     monkeypatch.setattr(checkpoints, "FOLDER", saved.parent)
-    first, again = pretrained("tiny"), pretrained("tiny")
+    first, again = load("tiny"), load("tiny")
     assert isinstance(first, Walker) and reads == [saved]
     with torch.no_grad():  # what one user changes is not another's
         next(first.model.parameters()).add_(1.0)
     first.card["name"] = "changed"
-    assert again.card == pretrained("tiny").card != first.card
-    for one, other in ((again, pretrained("tiny")), (first, pretrained("tiny"))):
+    assert again.card == load("tiny").card != first.card
+    for one, other in ((again, load("tiny")), (first, load("tiny"))):
         same = torch.equal(next(one.model.parameters()), next(other.model.parameters()))
         assert same == (one is again)
     save(replace(first, card={"name": "retrained"}), saved)
-    assert pretrained("tiny").card["name"] == "retrained" and len(reads) == 2
+    assert load("tiny").card["name"] == "retrained" and len(reads) == 2
 
 
 def test_with_no_weights_at_all_it_says_how_to_make_them(
@@ -213,7 +212,7 @@ def test_with_no_weights_at_all_it_says_how_to_make_them(
 ):
     monkeypatch.setattr(checkpoints, "FOLDER", tmp_path)
     with pytest.raises(CheckpointError, match="none .run make pretrained."):
-        pretrained()
+        load("walker")
 
 
 def test_a_missing_file(tmp_path: Path):

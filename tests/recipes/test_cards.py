@@ -17,7 +17,7 @@ from motiondiff_edu.recipes.walker import SHIPPED
     "recipe", [*SHIPPED, *SHIPPED_DANCERS, INBETWEENER, MOVER], ids=lambda one: one.name
 )
 def test_a_card_has_its_recipe(recipe):
-    said = copy.deepcopy(checkpoints.pretrained(recipe.name).card["recipe"])
+    said = copy.deepcopy(checkpoints.load(recipe.name).card["recipe"])
     is_now = json.loads(json.dumps(asdict(recipe)))
     config, name = is_now.pop("config"), is_now.pop("name")
     assert name == recipe.name and config

@@ -16,7 +16,7 @@ from motiondiff_edu.conditions.music import log_mel
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.performers.ear import EarConfig
 from motiondiff_edu.performers.networks import network
-from motiondiff_edu.pretrained.checkpoints import load_dancer, pretrained
+from motiondiff_edu.pretrained.checkpoints import load, load_dancer
 from motiondiff_edu.recipes import __main__ as command
 from motiondiff_edu.recipes.dancer import (
     DANCE_RECIPES,
@@ -174,7 +174,7 @@ def test_an_ear_can_be_taken_over(windows, tmp_path: Path):
     with pytest.raises(ValueError, match="mine needs an ear: pass `ear`"):
         train_dancer(mine, run.with_name("three.safetensors"), windows)
     with pytest.raises(ValueError, match="MoFusion has no ear"):
-        ear_within(pretrained("unconditional"))
+        ear_within(load("unconditional"))
 
 
 def test_recipes_that_cannot_be_trained_are_refused():

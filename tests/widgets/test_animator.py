@@ -17,7 +17,7 @@ from motiondiff_edu.motion.skeleton import JOINTS
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.widgets.editor import Editor
 walk = load_clip("WALK").world()[:57]
-editor = Editor(walk, partial(inbetween, checkpoints.pretrained("inbetweener"), steps=10))
+editor = Editor(walk, partial(inbetween, checkpoints.load("inbetweener"), steps=10))
 editor"""
 ROOT = "document.querySelector('.mde-editor').dataset"
 CHECK = """

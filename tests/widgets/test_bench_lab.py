@@ -13,7 +13,7 @@ from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.motion.skeleton import JOINTS
 from motiondiff_edu.widgets.bench import Bench
 clip = walk(np.tile([1.2, 0.0, 0.4], (60, 1)), seed=6)
-bench = Bench(checkpoints.pretrained("walker"), clip, samples=3, rounds=2, steps=5)
+bench = Bench(checkpoints.load("walker"), clip, samples=3, rounds=2, steps=5)
 bench"""
 CHECK = """
 hand, T_h = JOINTS.index("RightHand"), bench.bench.T_h

@@ -17,7 +17,7 @@ import torch
 
 from motiondiff_edu.mofusion import MOFUSION_SMALL
 from motiondiff_edu.performers.dancer import ETA, STEPS, Dancer
-from motiondiff_edu.pretrained.checkpoints import pretrained
+from motiondiff_edu.pretrained.checkpoints import load
 from motiondiff_edu.recipes.dancer import HEARING, DanceRecipe, train_dancer, training_windows
 from motiondiff_edu.recipes.ear import EAR, ear_within
 
@@ -91,7 +91,7 @@ def sweep(size: Size, runs: Path) -> Sweep:
     def trained(name: str, seed: int) -> Dancer:
         torch.set_num_threads(1)
         recipe = recipe_of(name, seed, size)
-        ear = ear_within(pretrained("dancer")) if recipe.ear else None
+        ear = ear_within(load("dancer")) if recipe.ear else None
         run, log = runs / f"{name}-{seed}.safetensors", partial(print, flush=True)
         return train_dancer(recipe, run, training_windows(recipe), log, ear)
 
