@@ -125,7 +125,7 @@ def denoiser_of(network, schedule: Schedule, target: str):
                 "no gradient here: call the network outside torch.no_grad() and "
                 "torch.inference_mode()"
             )
-        return to_eps(output, x_s, s, schedule, target)
+        return output if target == "eps" else to_eps(output, x_s, s, schedule, target)
 
     return denoise
 

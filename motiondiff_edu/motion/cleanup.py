@@ -238,10 +238,10 @@ def lock_feet(
 
     An ankle out of the leg's reach slides as little as possible.
     """
-    moved = np.array(positions, np.float64)
+    moved, slow = np.array(positions, np.float64), slow_for(positions, fps)
     for toe, heel in zip(TOES, HEELS, strict=True):
         free, path = free_legs(known, heel, toe), kept_places(moved[:, toe], known[:, toe])
-        standing = stands(path, fps, slow_for(moved, fps))
+        standing = stands(path, fps, slow)
         by = toe_path(path, ~free, standing, floor) - moved[:, toe]
         at = free & by.any(1)
         moved[at] = ankles_dragged(moved[at], heel, moved[at, heel] + by[at])
