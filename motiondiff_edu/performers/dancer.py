@@ -98,19 +98,18 @@ class Dancer(Performer):
                 if mel is not None
                 else "this network dances to music; pass its log-Mel as mel"
             )
-        guidance = self._guidance(guidance)
-        if mel is None:
-            return self._clamped(self._to(None, frames))
-        checked_frames(mel, frames)
-        with evaluating(self.model), torch.no_grad():
-            music = self.model.listen(*self.mel_input(mel, frames))
-        if guidance == 1:
-            return self._clamped(self._to(music, frames))
-        to_music, to_nothing = (self._to(one, frames) for one in (music, without(music)))
-        guided = guided_by_condition(to_music, to_nothing, guidance)
-        if guidance > 1:
-            guided = while_between(guided, to_music, self.schedule, *GUIDED)
-        return self._clamped(guided)
+        guidance, music = self._guidance(guidance), None
+        if mel is not None:
+            checked_frames(mel, frames)
+            with evaluating(self.model), torch.no_grad():
+                music = self.model.listen(*self.mel_input(mel, frames))
+        denoise = to_music = self._denoiser_for(music, frames)
+        if music is not None and guidance != 1:
+            to_nothing = self._denoiser_for(without(music), frames)
+            denoise = guided_by_condition(to_music, to_nothing, guidance)
+            if guidance > 1:
+                denoise = while_between(denoise, to_music, self.schedule, *GUIDED)
+        return self._clamped(denoise)
 
     @property
     def can_be_guided(self) -> bool:
@@ -138,7 +137,7 @@ class Dancer(Performer):
             )
         return guidance
 
-    def _to(self, music: Music | None, frames: int) -> Denoiser:
+    def _denoiser_for(self, music: Music | None, frames: int) -> Denoiser:
         """The denoiser for music that the network has listened to already."""
         with evaluating(self.model), torch.no_grad():
             memory = self.model.encode(music, frames)
