@@ -5,7 +5,7 @@ cannot."""
 import argparse
 from pathlib import Path
 
-from ..motion.checks import check_there
+from ..motion.arguments import check_there
 from . import outputs
 
 HELP = "dance to a song"

@@ -12,7 +12,7 @@ from typing import Any
 
 from .._files import check_writable
 from ..motion import registry
-from ..motion.checks import (
+from ..motion.arguments import (
     check_there,
     checked_count,
     checked_guidance,

@@ -4,7 +4,7 @@ file."""
 import argparse
 from pathlib import Path
 
-from ..motion.checks import check_there
+from ..motion.arguments import check_there
 from . import outputs
 
 HELP = "show motions in the browser"

@@ -20,7 +20,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from ..motion.checks import is_number
+from ..motion.arguments import is_number
 from .music import SAMPLE_RATE
 
 RATES = (1_000, 768_000)  # Hz: a sample rate in kHz is outside

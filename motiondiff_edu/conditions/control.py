@@ -12,7 +12,7 @@ from numbers import Real
 import numpy as np
 from jaxtyping import Float
 
-from ..motion.checks import LONGEST, checked_rate, is_number
+from ..motion.arguments import LONGEST, checked_rate, is_number
 from ..motion.root_frame import FPS
 
 FASTEST = 1000.0  # m/s, rad/s: beyond any control that is meant

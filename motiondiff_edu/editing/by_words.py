@@ -20,7 +20,7 @@ from ..beyond.guidance import blended
 from ..ddpm import Generators, draw, final, q_sample, timesteps
 from ..inbetweening import inpaint_steps
 from ..metrics.texts import HANDS, actions
-from ..motion.checks import checked_strength
+from ..motion.arguments import checked_strength
 from ..motion.dance_frame import Place
 from ..motion.known import checked_given
 from ..motion.moving_frame import D

@@ -10,7 +10,7 @@ from numbers import Integral
 import numpy as np
 from jaxtyping import Bool
 
-from ..motion.checks import checked_count
+from ..motion.arguments import checked_count
 from ..motion.motion import Motion, as_motion
 from ..motion.skeleton import COURSE, HIPS, JOINTS, J, joint_index
 

@@ -17,8 +17,8 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from . import registry
+from .arguments import MotionError, MotionWarning, checked_rate, is_number
 from .check import lies_down, unlike_a_body
-from .checks import MotionError, MotionWarning, checked_rate, is_number
 from .clip import Clip
 from .faults import WILD
 from .recordings import recordings

@@ -19,7 +19,7 @@ from ..conditions.audio_files import SILENT, AudioError, samples_of
 from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, fingerprint, frame_times, log_mel
 from ..ddpm import Denoiser, Generators, draw
 from ..mofusion import MoFusion, MoFusionConfig, Music
-from ..motion.checks import (
+from ..motion.arguments import (
     checked_guidance,
     checked_samples,
     checked_seconds,

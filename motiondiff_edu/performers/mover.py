@@ -18,7 +18,7 @@ from ..conditions.clip import ClipModel, check
 from ..conditions.text import Read
 from ..conditions.word_encoder import WordReader
 from ..ddpm import Denoiser, Generators, draw
-from ..motion.checks import (
+from ..motion.arguments import (
     checked_guidance,
     checked_samples,
     checked_seconds,

@@ -14,7 +14,7 @@ from torch import Tensor
 from tqdm.auto import tqdm
 
 from ..ddpm import Denoiser, Generators, Schedule, Step, ddim_steps, final, sample_steps
-from ..motion.checks import checked_seed
+from ..motion.arguments import checked_seed
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
 from .networks import AnyNetwork, Config

@@ -16,7 +16,7 @@ from .. import rollout
 from ..conditions.control import as_long
 from ..ddpm import Denoiser, Generators, ddim_steps, draw, sample_steps
 from ..modiff import MoDiff, MoDiffConfig
-from ..motion.checks import checked_samples, checked_seconds, checked_steps
+from ..motion.arguments import checked_samples, checked_seconds, checked_steps
 from ..motion.motion import Motion, MotionWarning, as_motion
 from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler

@@ -15,7 +15,7 @@ from ..editing import reconstruct as reconstruction
 from ..editing.by_words import STRENGTH
 from ..editing.inbetween import clean_samples
 from ..editing.plausible import each_until_plausible, longest_glide
-from ..motion.checks import checked_count, checked_samples, checked_seed, checked_strength
+from ..motion.arguments import checked_count, checked_samples, checked_seed, checked_strength
 from ..motion.cleanup import Body, clean_up, floor_under
 from ..motion.known import checked_known
 from ..motion.motion import Motion, MotionError, MotionWarning, as_motion

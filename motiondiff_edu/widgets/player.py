@@ -26,7 +26,7 @@ import traitlets
 from numpy.typing import ArrayLike
 
 from .._files import check_writable, replacing
-from ..motion.checks import checked_rate, is_number
+from ..motion.arguments import checked_rate, is_number
 from ..viz import body, style
 from . import films, lane, module, packing, poster
 from .lane import Soundtrack

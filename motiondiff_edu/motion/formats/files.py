@@ -15,8 +15,8 @@ import numpy as np
 
 from ..._files import replacing
 from .. import registry
+from ..arguments import check_there
 from ..check import lies_down, unit_of, unlike_a_body
-from ..checks import check_there
 from ..clip import Clip
 from ..motion import Motion, MotionError, MotionWarning, checked_path
 from ..recordings import recordings

@@ -23,8 +23,8 @@ import numpy as np
 from jaxtyping import Float
 
 from .. import registry
+from ..arguments import check_there
 from ..check import unlike_a_body
-from ..checks import check_there
 from ..motion import Motion, MotionError, MotionWarning
 from ..root_frame import FPS, forward_left
 from ..skeleton import BONE_LENGTHS, J, Skeleton, joint_index

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from ..checks import check_there
+from ..arguments import check_there
 from ..motion import Motion, MotionError, MotionWarning
 from ..root_frame import FPS
 from .humanml3d import joints_in, to_course
