@@ -44,10 +44,13 @@ class KinematicWeights:
         """
         return sum(getattr(self, name) * loss for name, loss in parts.items())
 
-    def loss_of(
+    def loss_for(
         self, body: "Body", planted: Bool[Tensor, "B T 2"]
     ) -> Callable[[Motion, Motion], Float[Tensor, "B"]]:
-        """L_k of these bodies, as `training_loss` takes it."""
+        """L_k of motions of these bodies, as `training_loss` takes it.
+
+        Source: MoFusion eq. 4
+        """
         return lambda x0_hat, x0: self.total(kinematic_parts(x0_hat, x0, body, planted))
 
 

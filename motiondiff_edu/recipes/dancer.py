@@ -12,16 +12,17 @@ from typing import Any
 
 import numpy as np
 import torch
+from jaxtyping import Bool, Float
 from torch import Tensor
 
 from .._files import digest_of_tensors
 from ..baselines.transformer import HearingTransformerConfig, regression_loss
 from ..beyond.classifier_free import without
 from ..beyond.gain_noise import gain_noise
-from ..beyond.loss_terms import toe_changes
+from ..beyond.loss_terms import changes, toe_changes, total
 from ..beyond.schedules import shifted
-from ..ddpm import Schedule, cosine_schedule
-from ..kinematic_loss import KinematicWeights, training_loss, weight_by_step
+from ..ddpm import Schedule, cosine_schedule, squared_error
+from ..kinematic_loss import training_loss, weight_by_step
 from ..metrics.bodies import bone_lengths
 from ..mofusion import MOFUSION_FULL, MOFUSION_SMALL
 from ..motion import dance_frame
@@ -31,14 +32,14 @@ from ..performers.hearing_mofusion import HearingConfig
 from ..performers.networks import Config, network
 from ..training import LossFn
 from .ear import EAR, EarRecipe, TrainedEar, ear_of
-from .mofusion_loss import CHANGES, KINEMATIC, TOE_CHANGES, data_loss
+from .mofusion import MoFusionRecipe
 from .songs import songs_as_mel
-from .training import Provenance, Recipe, on_device, train_recipe
+from .training import Provenance, on_device, train_recipe
 
 
 # ---- recipes -------------------------------------------------------------------------------------
 @dataclass(frozen=True)
-class DanceRecipe(Recipe):
+class DanceRecipe(MoFusionRecipe):
     """The sizes and rates of one training run of a dancer.
 
     The data are `songs` songs of `seconds` each with `dances` dances each, or, for a network
@@ -49,9 +50,6 @@ class DanceRecipe(Recipe):
     """
 
     config: Config  # of a network for dancers (`performers.networks`)
-    kinematic: KinematicWeights | None = KINEMATIC
-    changes: float = CHANGES  # weights in the data term: `beyond.loss_terms`
-    toes: float = TOE_CHANGES
     gain_noise: float = 0.3  # `beyond.gain_noise`
     no_music: float = 0.0  # share of the music left out: `beyond.classifier_free`
     snr: float = 0.1  # factor on the signal-to-noise ratio of the cosine schedule
@@ -199,13 +197,16 @@ def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> L
     """Eq. 4 of dances and their music, which sounds as from different loudspeakers.
 
     Now and then the music is left out. A regression has a loss of its own.
+    Source: MoFusion eq. 4; the other terms are ours.
     """
     if getattr(recipe.config, "deterministic", False):
         return regression_loss_of(recipe, windows)
-    scaler = windows.motion_scaler
-    toes = toe_changes(recipe.toes, dance_frame.moves, scaler.std, toes_moved(windows))
-    data = data_loss(recipe.changes, toes)
-    lambda_k = weight_by_step(schedule, KINEMATIC.over_time)
+    scaler, weights = windows.motion_scaler, recipe.kinematic
+    data = total(squared_error, changes(recipe.changes))
+    if recipe.toes:
+        moved = toes_moved(windows)
+        data = total(data, toe_changes(recipe.toes, dance_frame.moves, scaler.std, moved))
+    lambda_k = weight_by_step(schedule, weights.over_time) if weights else None
 
     def loss_fn(model: Any, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
@@ -214,10 +215,8 @@ def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> L
         if music is not None and recipe.no_music:
             left_out = torch.rand(len(mel), generator=generator) < recipe.no_music
             music = without(music, left_out.to(device))
-        kinematic = None
-        if recipe.kinematic:
-            body = dance_frame.body_of(scaler.to(device))
-            kinematic = recipe.kinematic.loss_of(body, planted)
+        body = dance_frame.body_of(scaler.to(device))
+        kinematic = weights.loss_for(body, planted) if weights else None
         return training_loss(
             model, (x0, music), schedule, generator,
             kinematic=kinematic, lambda_k=lambda_k, loss=data,
@@ -238,7 +237,9 @@ def regression_loss_of(recipe: DanceRecipe, windows: DanceWindows) -> LossFn:
     return loss_fn
 
 
-def drawn(recipe: DanceRecipe, windows: DanceWindows, generator: torch.Generator) -> tuple:
+def drawn(
+    recipe: DanceRecipe, windows: DanceWindows, generator: torch.Generator
+) -> tuple[Float[Tensor, "B T D"], Float[Tensor, "B M C"], Bool[Tensor, "B T 2"]]:
     """A random batch: motion, music with the recipe's gain noise, and which feet are planted."""
     motion, mel, planted = windows.draw(recipe.batch, generator)
     return motion, gain_noise(mel, recipe.gain_noise, generator), planted

@@ -20,10 +20,17 @@ from jaxtyping import Bool, Float
 from torch import Tensor
 
 from ..beyond.around_lines import GivenLines
-from ..beyond.loss_terms import as_x0_errors, toe_changes, weighted, weighted_by_step
+from ..beyond.loss_terms import (
+    as_x0_errors,
+    changes,
+    toe_changes,
+    total,
+    weighted,
+    weighted_by_step,
+)
 from ..beyond.schedules import shifted
 from ..beyond.turning_frame import TurningFrame
-from ..ddpm import Schedule, cosine_schedule
+from ..ddpm import Schedule, cosine_schedule, squared_error
 from ..kinematic_loss import Body, training_loss, weight_by_step
 from ..motion import dance_frame
 from ..motion.known import first_place
@@ -35,13 +42,13 @@ from ..performers.networks import network
 from ..training import LossFn
 from .dancer import bones_of, digest
 from .drawn_masks import drawn_masks, uniform
-from .mofusion_loss import CHANGES, KINEMATIC, TOE_CHANGES, data_loss
+from .mofusion import MoFusionRecipe
 from .recordings import CREDIT, Recorded, training_recordings
-from .training import Provenance, Recipe, on_device, train_recipe
+from .training import Provenance, on_device, train_recipe
 
 
 @dataclass(frozen=True)
-class InbetweenerRecipe(Recipe):
+class InbetweenerRecipe(MoFusionRecipe):
     """One training run of an in-betweener."""
 
     config: KeyframeConfig
@@ -94,7 +101,7 @@ def training_windows(recipe: InbetweenerRecipe) -> DanceWindows:
 
 NOT_DATA = (
     "name", "config", "steps", "snr", "lr", "optimizer", "batch", "decay", "seed", "path_scale",
-    "sizes", "stages",
+    "sizes", "stages", "kinematic", "changes", "toes",
 )  # fmt: skip
 
 
@@ -200,13 +207,18 @@ def train_inbetweener(
 
 
 def loss_of(recipe: InbetweenerRecipe, windows: DanceWindows, schedule: Schedule) -> LossFn:
-    """Eq. 4 of the remainder around the lines, each motion with a mask, a size and a height."""
-    scaler = windows.motion_scaler
-    toes = toe_changes(TOE_CHANGES, dance_frame.moves, scaler.std, toes_moved(windows))
-    data = data_loss(CHANGES, toes)
+    """Eq. 4 of the remainder around the lines, each motion with a mask, a size and a height.
+
+    Source: MoFusion eq. 4; the other terms, and the lines, are ours.
+    """
+    scaler, weights = windows.motion_scaler, recipe.kinematic
+    data = total(squared_error, changes(recipe.changes))
+    if recipe.toes:
+        moved = toes_moved(windows)
+        data = total(data, toe_changes(recipe.toes, dance_frame.moves, scaler.std, moved))
     if recipe.config.target == "v":
         data = weighted_by_step(data, as_x0_errors(schedule))
-    lambda_k = weight_by_step(schedule, KINEMATIC.over_time)
+    lambda_k = weight_by_step(schedule, weights.over_time) if weights else None
 
     def loss_fn(model: Any, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
@@ -223,7 +235,7 @@ def loss_of(recipe: InbetweenerRecipe, windows: DanceWindows, schedule: Schedule
         squares = lines.scale.square()
         loss = weighted(data, squares / squares.mean((1, 2), keepdim=True))
         body = body_around(lines, scaler.to(device))
-        kinematic = KINEMATIC.loss_of(body, planted.to(device))
+        kinematic = weights.loss_for(body, planted.to(device)) if weights else None
         return training_loss(
             model, (lines.remainder(motion), lines), schedule, generator,
             kinematic=kinematic, lambda_k=lambda_k, loss=loss,

@@ -25,7 +25,7 @@ from ..conditions.clip import ClipModel, check
 from ..conditions.clip import load as load_clip
 from ..conditions.text import base_vocabulary, read_words
 from ..conditions.word_encoder import NOTHING, PADDING, ids_of
-from ..ddpm import Schedule, cosine_schedule
+from ..ddpm import Schedule, cosine_schedule, squared_error
 from ..kinematic_loss import KinematicWeights, training_loss, weight_by_step
 from ..motion import moving_frame
 from ..motion.skeleton import TOES
@@ -35,13 +35,13 @@ from ..performers.networks import network
 from ..performers.planned_mofusion import Performing, PlannedConfig, PlannedMoFusion
 from ..performers.text_mofusion import TextMoFusionConfig, Texts
 from ..training import LossFn
-from .mofusion_loss import CHANGES, KINEMATIC, TOE_CHANGES, data_loss
-from .training import Provenance, Recipe, final_loss, on_device, train_recipe
+from .mofusion import KINEMATIC, MoFusionRecipe
+from .training import Provenance, final_loss, on_device, train_recipe
 
 
 # ---- recipes -------------------------------------------------------------------------------------
 @dataclass(frozen=True)
-class MoverRecipe(Recipe):
+class MoverRecipe(MoFusionRecipe):
     """The sizes and rates of one training run of a mover.
 
     The data are `clips` described clips of `data_synth.actions`; every clip is also mirrored, with
@@ -275,12 +275,17 @@ def loss_of(
     """Eq. 4 of motions, given texts and timelines, and eq. 4 of the timelines, given texts.
 
     `texts_of` makes of the windows' ids what the network takes.
+    Source: MoFusion eq. 4; the other terms are ours.
     """
-    scaler = windows.scaler.part(slice(moving_frame.D))
+    scaler, weights = windows.scaler.part(slice(moving_frame.D)), recipe.kinematic
     columns = loss_terms.metre_weights(scaler.std, recipe.metres)
-    toes = loss_terms.toe_changes(TOE_CHANGES, moving_frame.moves, scaler.std, toes_moved(windows))
-    data = data_loss(CHANGES, toes, columns)
-    lambda_k = weight_by_step(schedule, KINEMATIC.over_time)
+    poses = loss_terms.total(squared_error, loss_terms.changes(recipe.changes))
+    data = loss_terms.weighted(poses, columns)
+    if recipe.toes:
+        moved = toes_moved(windows)
+        toes = loss_terms.toe_changes(recipe.toes, moving_frame.moves, scaler.std, moved)
+        data = loss_terms.total(data, toes)
+    lambda_k = weight_by_step(schedule, weights.over_time) if weights else None
     batch = batches(recipe, windows, texts_of)
 
     def loss_fn(model: Any, generator: torch.Generator) -> Tensor:
@@ -290,10 +295,8 @@ def loss_of(
         if isinstance(model, PlannedMoFusion):
             planning = training_loss(model.planner, (plan, contexts.plan), schedule, generator)
             performing = Performing(model, plan)
-        kinematic = None
-        if recipe.kinematic:
-            body = moving_frame.body_of(scaler.to(x0.device))
-            kinematic = recipe.kinematic.loss_of(body, planted)
+        body = moving_frame.body_of(scaler.to(x0.device))
+        kinematic = weights.loss_for(body, planted) if weights else None
         return planning + training_loss(
             performing, (x0, contexts), schedule, generator,
             kinematic=kinematic, lambda_k=lambda_k, loss=data,

@@ -13,9 +13,10 @@ from motiondiff_edu.beyond.turning_frame import TurningFrame
 from motiondiff_edu.ddpm import cosine_schedule, q_sample
 from motiondiff_edu.editing.inbetween import inbetween
 from motiondiff_edu.editing.masks import keyframes
+from motiondiff_edu.kinematic_loss import kinematic_parts
 from motiondiff_edu.motion import dance_frame
-from motiondiff_edu.motion.skeleton import HIPS, J, joint_index
-from motiondiff_edu.performers.dance_windows import DanceWindows
+from motiondiff_edu.motion.skeleton import HIPS, TOES, J, joint_index
+from motiondiff_edu.performers.dance_windows import DanceWindows, toes_moved
 from motiondiff_edu.performers.inbetweener import KeyframeConfig, KeyframeMoFusion
 from motiondiff_edu.prediction import to_x0
 from motiondiff_edu.recipes import inbetweener
@@ -99,19 +100,22 @@ def test_motions_are_seen_from_their_first_given_pose_and_resized(windows):
     torch.testing.assert_close(after, 1.2 * before + higher, atol=1e-4, rtol=0)
 
 
+@pytest.mark.parametrize("all_terms", [False, True])
 @pytest.mark.parametrize(("target", "turning"), [("x0", False), ("v", False), ("v", True)])
 def test_the_loss_of_a_batch_is_eq_4_of_what_remains_without_the_lines(
-    windows, target, turning, monkeypatch
+    windows, target, turning, all_terms
 ):
-    """Errors are those of x0, whatever the network predicts, and in whatever frame."""
-    for name in ("CHANGES", "TOE_CHANGES"):
-        monkeypatch.setattr(inbetweener, name, 0.0)
-    nothing = {"skeleton": 0.0, "asymmetry": 0.0, "slide": 0.0}
-    monkeypatch.setattr(inbetweener, "KINEMATIC", replace(inbetweener.KINEMATIC, **nothing))
+    """Errors are those of x0, whatever the network predicts, and in whatever frame.
+
+    With all terms: errors of changes and of the toes, and L_k of lines and remainder together.
+    """
     config = replace(SMALL, target=target, turning=turning)
     recipe = replace(RECIPE, config=config, sizes=0.0, stages=0.0)
+    if not all_terms:
+        recipe = replace(recipe, kinematic=None, changes=0.0, toes=0.0)
     torch.manual_seed(0)
     model, asked = KeyframeMoFusion(config), []
+    torch.nn.init.normal_(model.unet.out.weight, std=0.1)
     forward = model.forward
 
     def watched(r_s, s, lines):
@@ -123,7 +127,7 @@ def test_the_loss_of_a_batch_is_eq_4_of_what_remains_without_the_lines(
     ((r_s, s, lines, output),) = asked
     r0_hat = to_x0(output, r_s, s, SCHEDULE, target)
     generator = seeded(5)
-    motion, _, _ = windows.draw(4, generator)
+    motion, _, planted = windows.draw(4, generator)
     known = drawn_masks(4, T, generator)
     torch.rand(12, generator=generator)  # sizes, who stands on a stage, and how high
     scaler = windows.motion_scaler
@@ -138,8 +142,17 @@ def test_the_loss_of_a_batch_is_eq_4_of_what_remains_without_the_lines(
     eps = torch.randn(r0.shape, generator=generator)
     assert torch.equal(s, steps)
     torch.testing.assert_close(r_s, q_sample(r0, steps, SCHEDULE, eps))
-    errors = ((lines.whole(r0_hat) - seen).where(~columns, 0.0)).square().mean((1, 2))
-    torch.testing.assert_close(loss, (errors / lines.scale.square().mean((1, 2))).mean())
+    errors = (lines.whole(r0_hat) - seen).where(~columns, 0.0)
+    typical = lines.scale.square().mean((1, 2), keepdim=True).sqrt()
+    by_hand = (errors / typical).square().mean()
+    if all_terms:
+        errors = (r0_hat - r0) * lines.scale / typical
+        steps = dance_frame.moves(errors * scaler.std)[:, :, list(TOES)].square().mean()
+        by_hand += 5 * errors.diff(dim=1).square().mean() + 0.2 / toes_moved(windows) * steps
+        parts = kinematic_parts(r0_hat, r0, body_around(lines, scaler), planted)
+        L_k = 400 * parts["skeleton"] + 5 * parts["asymmetry"] + 0.3 * parts["slide"]
+        by_hand += (SCHEDULE.alpha_bar[s].float() * L_k).mean()
+    torch.testing.assert_close(loss, by_hand)
 
 
 def test_some_motions_stand_on_stages_but_none_of_which_nothing_is_given(windows, monkeypatch):

@@ -10,6 +10,7 @@ import torch
 from motiondiff_edu.beyond.past_noise import past_noise
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.diffusion_dropout import Dropout
+from motiondiff_edu.kinematic_loss import OVER_TIME
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.mofusion import MOFUSION_SMALL, MoFusion
 from motiondiff_edu.motion.clip import Clip
@@ -142,6 +143,30 @@ def test_without_departures_a_dancer_s_loss_is_the_mean_square_of_eps():
     x_s = alpha_bar**0.5 * x0 + (1 - alpha_bar) ** 0.5 * eps
     by_hand = (eps - model(x_s, s, model.listen(mel, windows.mel_times))).square().mean()
     assert loss.item() == pytest.approx(by_hand.item(), rel=1e-5)
+
+
+def test_kinematic_losses_have_the_recipes_weight_over_time():
+    windows, found = dances(), {}
+    for name in OVER_TIME:
+        recipe = replace(DANCED_WITH["dancer"][0], batch=6)
+        recipe = replace(recipe, kinematic=replace(recipe.kinematic, over_time=name))
+        torch.manual_seed(0)
+        model = MoFusion(recipe.config)
+        loss_fn = dancer.loss_of(recipe, windows, dancer.schedule_of(recipe))
+        found[name] = loss_fn(model, seeded()).item()
+    assert found["none"] < found["alpha_bar"] < found["constant"] and len(set(found.values())) == 4
+    wrong = replace(recipe, kinematic=replace(recipe.kinematic, over_time="always"))
+    with pytest.raises(ValueError, match="over_time must be one of none, constant"):
+        dancer.loss_of(wrong, windows, dancer.schedule_of(wrong))
+
+
+def test_a_plain_loss_needs_no_toe_that_moves():
+    still = [np.ones((60, 21, 3)) * np.linspace(0, 1, 21)[:, None]] * 2
+    mels = [torch.zeros(120, 5)] * 2
+    windows = DanceWindows.of(still, [np.ones((60, 2), bool)] * 2, mels, 40)
+    torch.manual_seed(0)
+    loss_fn = dancer.loss_of(PLAIN, windows, dancer.schedule_of(PLAIN))
+    assert loss_fn(MoFusion(PLAIN.config), seeded()).isfinite()
 
 
 def test_a_batch_needs_a_window():

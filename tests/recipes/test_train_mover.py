@@ -9,12 +9,14 @@ import torch
 
 from motiondiff_edu.conditions.word_encoder import NOTHING, PADDING
 from motiondiff_edu.ddpm import cosine_schedule, draw, q_sample
+from motiondiff_edu.kinematic_loss import kinematic_parts
+from motiondiff_edu.motion import moving_frame
 from motiondiff_edu.motion.moving_frame import D
+from motiondiff_edu.motion.skeleton import TOES
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.performers.planned_mofusion import PlannedConfig, PlannedMoFusion
 from motiondiff_edu.performers.text_mofusion import TextMoFusion, TextMoFusionConfig
-from motiondiff_edu.recipes import mover as recipe_module
-from motiondiff_edu.recipes.mofusion_loss import CHANGES, KINEMATIC
+from motiondiff_edu.recipes.mofusion import KINEMATIC
 from motiondiff_edu.recipes.mover import (
     MOVER,
     MOVER_PLAIN,
@@ -49,28 +51,34 @@ def quiet(line: str) -> None:
     pass
 
 
-def squares(error: torch.Tensor) -> torch.Tensor:
-    """The data term without the toes: squared errors of poses and, five times, of changes."""
-    return error.square().mean() + CHANGES * error.diff(dim=1).square().mean()
-
-
-@pytest.fixture
-def no_toes(monkeypatch):
-    monkeypatch.setattr(recipe_module, "TOE_CHANGES", 0.0)
-
-
-def test_the_loss_is_equation_4_and_without_kinematics_its_data_term(windows, no_toes):
-    """By hand: the squares of x0_hat, with the generator's own draws in their order."""
+@pytest.mark.parametrize("metres", [0.0, 1.0])
+@pytest.mark.parametrize("kinematic", [None, SHORT.kinematic], ids=["plain", "kinematic"])
+@pytest.mark.parametrize("toes", [0.0, 0.2])
+def test_the_loss_is_equation_4(windows, toes, kinematic, metres):
+    """By hand: squared errors of x0_hat, of its changes, and of the toes' changes in the world;
+    and L_k, weighted by alpha_bar. The generator's own draws are in their order."""
     torch.manual_seed(3)
     config = replace(TINY, words=windows.words)
     model, schedule = TextMoFusion(config).eval(), cosine_schedule(20)
-    found = loss_of(PLAIN, windows, schedule)(model, torch.Generator().manual_seed(4))
+    torch.nn.init.normal_(model.unet.out.weight, std=0.1)
+    recipe = replace(SHORT, toes=toes, kinematic=kinematic, metres=metres)
+    found = loss_of(recipe, windows, schedule)(model, torch.Generator().manual_seed(4))
     generator = torch.Generator().manual_seed(4)
-    x0, ids, _ = windows.draw(SHORT.frames, generator)
-    torch.rand(len(ids), generator=generator)
+    x0, ids, planted = windows.draw(SHORT.frames, generator)
+    left_out = without_some(ids, recipe.no_text, generator)
     s = torch.randint(1, 21, (len(x0),), generator=generator)
     x_s = q_sample(x0, s, schedule, draw(x0, generator))
-    wanted = squares(x0 - model(x_s, s, model.listen(ids)))
+    x0_hat = model(x_s, s, model.listen(left_out))
+    std = windows.scaler.std
+    error = (std**metres / (std**metres).mean()).sqrt() * (x0 - x0_hat)
+    wanted = error.square().mean() + 5 * error.diff(dim=1).square().mean()
+    steps = moving_frame.moves((x0 - x0_hat) * std)[:, :, list(TOES)]
+    wanted = wanted + toes / toes_moved(windows) * steps.square().mean()
+    if kinematic:
+        parts = kinematic_parts(x0_hat, x0, moving_frame.body_of(windows.scaler), planted)
+        L_k = 400 * parts["skeleton"] + 5 * parts["asymmetry"] + 1 * parts["slide"]
+        wanted = wanted + (schedule.alpha_bar[s].float() * L_k).mean()
+        assert parts["slide"].max() > 0
     torch.testing.assert_close(found, wanted)
 
 
@@ -84,9 +92,12 @@ def test_each_departure_changes_the_loss(windows):
 
     whole = loss()
     assert loss(kinematic=None) < whole and loss(no_text=1.0) != whole != loss(metres=0.0)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(recipe_module, "TOE_CHANGES", 0.0)
-        assert loss() < whole
+    assert loss(toes=0.0) < whole and loss(changes=0.0) < whole
+    times = [
+        loss(kinematic=replace(SHORT.kinematic, over_time=name))
+        for name in ("none", "constant", "alpha_bar", "snr")
+    ]
+    assert len(set(times)) == 4 and times[2] == whole
     assert toes_moved(windows) > 1e-4
 
 
@@ -123,26 +134,26 @@ def test_a_killed_training_continues_and_ends_like_one_in_one_go(windows, tmp_pa
         assert np.allclose(a, b, atol=1e-6), name
 
 
-def test_a_network_that_plans_learns_both_and_each_has_its_own_loss(planned, no_toes):
+def test_a_network_that_plans_learns_both_and_each_has_its_own_loss(planned):
     """By hand: the mean square of the timeline's x0_hat, and the squares of the motion's with a
     clean plan."""
     torch.manual_seed(3)
     config = tiny_plan(planned)
     model, schedule = PlannedMoFusion(config).eval(), cosine_schedule(20)
-    recipe = replace(PLAIN, config=config)
+    recipe = replace(PLAIN, config=config, changes=0.0, toes=0.0)
     found = loss_of(recipe, planned, schedule)(model, seeded())
     generator, wanted = seeded(), 0.0
     x0, ids, _ = planned.draw(SHORT.frames, generator)
     torch.rand(len(ids), generator=generator)
     heard = model.listen(ids)
     motion, plan = x0[..., :D], x0[..., D:]
-    for clean, out, loss in (
-        (plan, lambda x_s, s: model.planner(x_s, s, heard.plan), lambda e: e.square().mean()),
-        (motion, lambda x_s, s: model(x_s, s, heard, plan), squares),
+    for clean, out in (
+        (plan, lambda x_s, s: model.planner(x_s, s, heard.plan)),
+        (motion, lambda x_s, s: model(x_s, s, heard, plan)),
     ):
         s = torch.randint(1, 21, (len(x0),), generator=generator)
         x_s = q_sample(clean, s, schedule, draw(clean, generator))
-        wanted = wanted + loss(clean - out(x_s, s))
+        wanted = wanted + (clean - out(x_s, s)).square().mean()
     torch.testing.assert_close(found, wanted)
     found.backward()
     assert all(p.grad is not None for p in model.planner.words.parameters())
