@@ -90,6 +90,7 @@ UNCONDITIONAL = DanceRecipe(
     "unconditional",
     replace(MOFUSION_SMALL, target="x0", skip=False, C=0),
     steps=6000,
+    gain_noise=0.0,
     songs=3000,
 )
 
