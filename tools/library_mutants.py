@@ -67,7 +67,7 @@ MUTANTS = (
     Mutant("prediction.py", "return a * eps - b * x0", "return a * x0 - b * eps"),
     # MoDiff
     Mutant("modiff.py", "step_embedding(8 * torch.arange", "step_embedding(0 * torch.arange"),
-    Mutant("modiff.py", "return x + self.time[self.config.T_h :]", "return x"),
+    Mutant("modiff.py", " + self.time[self.config.T_h :]", ""),
     Mutant(
         "modiff.py", "out + self.skip[s][:, None, None] * x_s", "out + self.skip[s][:, None, None]"
     ),

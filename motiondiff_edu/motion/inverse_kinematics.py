@@ -144,7 +144,8 @@ def ankles_dragged(
     check_target(heel, targets)
     if not len(poses):
         return np.array(poses)
-    hip, knee, toe = heel - 2, heel - 1, heel + 1
+    hip, knee = heel - 2, heel - 1
+    toe = heel + 1
     places = limbs_bent(poses[:, [hip, knee, heel]], targets, bends_to(poses, hip))
     moved = np.array(poses)
     moved[:, [knee, heel]] = places[:, 1:]
