@@ -224,7 +224,6 @@ def training_loss(
     generator: torch.Generator,
     *,
     dropout: Callable[[Past, Int[Tensor, "B"], torch.Generator], Past] | None = None,
-    loss: Callable[[Future, Int[Tensor, "B"]], Float[Tensor, ""]] = squared_error,
 ) -> Float[Tensor, ""]:
     """Algorithm 1: the loss of one batch (past, future, control).
 
@@ -232,8 +231,6 @@ def training_loss(
     x_s = sqrt(alpha_bar_s) x0 + sqrt(1 - alpha_bar_s) eps
     s ~ Uniform(1..S), eps ~ N(0, I); the paper's x0 and x_s are y_0 and y_s.
     dropout  makes x_d from the past x (`diffusion_dropout.Dropout`); without it x_d = x
-    loss     the loss of the error; default: the mean square of eq. 10, others are in
-             `beyond.loss_terms` (ours)
     The network can predict x0 or v instead of eps (`model.config.target`), which is ours, too.
     Source: MoDiff Alg. 1, eq. 10.  Notebook: 05, 07
     """
@@ -245,4 +242,4 @@ def training_loss(
     x_s = q_sample(x0, s, schedule, eps)  # eq. 2
     kind = model.config.target  # type: ignore[attr-defined]  # a network has its configuration
     target = target_of(x0, eps, s, schedule, kind)
-    return loss(target - model(x_s, s, past, control), s)  # eq. 10
+    return squared_error(target - model(x_s, s, past, control), s)  # eq. 10

@@ -260,32 +260,17 @@ def test_training_loss_is_algorithm_1(target, rate):
     assert loss.item() == pytest.approx(errors.mean().item(), rel=1e-5)
 
 
-def test_training_loss_takes_another_loss_of_the_error_and_its_steps():
-    model, schedule = lively(TINY), linear_schedule(TINY.S, 0.2, 0.95)
-    x0, _, past, control = inputs(TINY)
-    seen = {}
-
-    def largest(error, s):
-        seen.update(error=error, s=s)
-        return error.abs().amax()
-
-    draws = torch.Generator().manual_seed(5)
-    loss = training_loss(model, (past, x0, control), schedule, draws, loss=largest)
-    assert seen["error"].shape == x0.shape and seen["s"].shape == (B,)
-    assert loss == seen["error"].abs().amax() and loss.requires_grad
-
-
 def test_every_step_is_drawn_and_none_beyond():
     model, schedule = lively(TINY), linear_schedule(TINY.S, 0.2, 0.95)
     seen = set()
     x0, _, past, control = inputs(TINY, batch=200)
     draws = torch.Generator().manual_seed(6)
 
-    def loss(error, s):
+    def dropout(past, s, generator):
         seen.update(s.tolist())
-        return error.mean()
+        return past
 
-    training_loss(model, (past, x0, control), schedule, draws, loss=loss)
+    training_loss(model, (past, x0, control), schedule, draws, dropout=dropout)
     assert seen == set(range(1, TINY.S + 1))
 
 

@@ -2,7 +2,7 @@
 
 A walker continues its own poses, which are never quite right. If it was trained on clean
 pasts alone, small errors grow. The paper's remedy is diffusion dropout (MoDiff III-D); this one is
-ours, and the shipped walkers have it.
+ours, and `walker` and `walker-plain` have it.
 Gain: docs/RESULTS.md, *From the paper's walker to ours* (`walker-departures.past-noise.*`): bone
 errors are smaller, the control is kept better, feet slide less.
 """

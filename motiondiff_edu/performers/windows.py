@@ -94,6 +94,7 @@ def held_control(
     With a joystick the control after the step about to be taken is not known, so a rollout holds
     it. A network that was always trained with the true future control would trust a held one as
     well.
+    Gain: not measured yet; it will be `walker-departures.never-held.*` in docs/RESULTS.md.
     Ours; MoDiff takes the control up to t + T_p as known.  Notebook: 07
     """
     hold = torch.rand(len(control), generator=generator) < share
@@ -102,7 +103,7 @@ def held_control(
     return torch.cat([control[:, :T_h], future], dim=1)
 
 
-def typical_change(windows: Windows, samples: int = 4096) -> Float[Tensor, "T_p D"]:
-    """The RMS movement of poses in 1 to T_p frames, over windows, in standard deviations."""
+def typical_change(windows: Windows, samples: int = 4096) -> Float[Tensor, "D"]:
+    """The RMS movement of poses from frame to frame, over windows, in standard deviations."""
     past, future, _ = windows.draw(samples, torch.Generator().manual_seed(0))
-    return (future - past[:, -1:]).square().mean(0).sqrt()
+    return (future[:, 0] - past[:, -1]).square().mean(0).sqrt()

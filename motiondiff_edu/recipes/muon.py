@@ -88,7 +88,8 @@ class MuonAndAdam:
         others = [p for p in model.parameters() if id(p) not in matrices]
         if not first:
             raise ValueError(
-                f"{type(model).__name__} has no transformer block, which Muon needs; use Adam"
+                f"{type(model).__name__} has no block of a transformer or of MoFusion's U-Net, "
+                'which Muon is for; write optimizer="adam"'
             )
         self.parts = [Muon(first, lr=lr), torch.optim.Adam(others, lr=lr, fused=True)]
 

@@ -210,8 +210,11 @@ def prepared(recipe: WalkerRecipe, clips: list[Clip]) -> Prepared:
 def loss_of(
     recipe: WalkerRecipe, windows: Windows, schedule: Schedule, dropout: Dropout | None = None
 ) -> LossFn:
-    """Algorithm 1 of drawn windows: part of them hold their control, and all pasts are noised."""
-    change = typical_change(windows)[0]
+    """Algorithm 1 of drawn windows; a share of them holds its control, and pasts are noised.
+
+    Source: MoDiff Alg. 1; held control and past noise are ours.
+    """
+    change = typical_change(windows)
 
     def loss_fn(model: Any, generator: torch.Generator) -> Tensor:
         past, x0, control = windows.draw(recipe.batch, generator)

@@ -18,7 +18,14 @@ NAMES = [
 ]
 
 # nothing else may be without a measured gain
-NOT_MEASURED = {"activity", "turning_frame", "gain_noise", "self_attention", "hearing"}
+NOT_MEASURED = {
+    "activity",
+    "turning_frame",
+    "gain_noise",
+    "self_attention",
+    "hearing",
+    "loss_terms",
+}
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)

@@ -30,6 +30,7 @@ def one_error(frame: int = 0, column: int = 0, size: float = 1.0, shape=(1, 3, 6
 def test_weights_are_weights_of_the_squares():
     error = torch.tensor([[[1.0, 2.0], [3.0, 4.0], [0.0, 1.0]]])
     columns, frames = torch.tensor([4.0, 1.0]), torch.tensor([[1.0], [10.0], [100.0]])
+    frames = frames.expand(1, 3, 2)
     by_column = weighted(squared_error, columns)
     assert by_column(error, S1).item() == pytest.approx((4 + 4 + 36 + 16 + 0 + 1) / 6)
     by_frame = weighted(by_column, frames)
@@ -67,8 +68,9 @@ def test_errors_of_v_count_as_those_of_x0():
 
 def test_weights_that_suit_a_difference_leave_out_what_both_ends_share():
     """Columns for changes; with frames, what is shared counts."""
-    columns = metre_weights(torch.linspace(0.1, 0.9, 63))
-    frames, steady = torch.tensor([[1.0], [4.0], [9.0]]), torch.rand(1, 1, 63).expand(1, 3, 63)
+    columns = metre_weights(torch.linspace(0.1, 0.9, 63), 2.0)
+    frames = torch.tensor([[1.0], [4.0], [9.0]]).expand(1, 3, 63)
+    steady = torch.rand(1, 1, 63).expand(1, 3, 63)
     assert weighted(changes(1.0), columns)(steady, S1).item() == pytest.approx(0, abs=1e-9)
     assert weighted(changes(1.0), frames)(steady, S1) > 0.01
 
@@ -96,6 +98,6 @@ def test_toes_err_in_the_world_where_pelvis_and_leg_do_not_err_alike():
 
 
 def test_weights_follow_the_errors_device_and_kind():
-    loss = weighted(total(squared_error, changes(1.0)), metre_weights(torch.ones(63)))
+    loss = weighted(total(squared_error, changes(1.0)), metre_weights(torch.ones(63), 1.0))
     assert loss(torch.ones(1, 3, 63, dtype=torch.float64), S1).dtype == torch.float64
     assert np.isfinite(loss(one_error(), S1).item())

@@ -112,7 +112,7 @@ def test_a_walkers_loss_is_algorithm_1(walks, rate, held, noise):
     rows = start[:, None] + torch.arange(T_H + T_P)
     c = walks.control[torch.where(holds[:, None], rows.clamp(max=start[:, None] + T_H - 1), rows)]
     past, y = walks.poses[rows[:, :T_H]], walks.poses[rows[:, T_H:]]
-    past = past_noise(past, noise, typical_change(walks)[0], generator)
+    past = past_noise(past, noise, typical_change(walks), generator)
     s = torch.randint(1, 7, (7,), generator=generator)
     alpha_bar = torch.cumprod(1 - torch.linspace(0.2, 0.95, 6), 0)[s - 1][:, None, None]
     if rate:

@@ -41,8 +41,8 @@ VARIANTS |= {"x0": added("x0 instead of eps", "muon", config=replace(LINEAR_MUSI
 VARIANTS |= {
     "convolutions": added("convolutions over the Mel", "x0", config=replace(MOFUSION_SMALL, **X0))
 }
-VARIANTS |= {"changes": added("errors of changes", "convolutions", changes=5.0)}
-VARIANTS |= {"toes": added("errors of toes", "changes", toes=0.2)}
+VARIANTS |= {"changes": added("errors of changes", "convolutions", changes=DanceRecipe.changes)}
+VARIANTS |= {"toes": added("errors of toes", "changes", toes=DanceRecipe.toes)}
 VARIANTS |= {
     "ear": added("an ear", "toes", config=HEARING, ear=EAR),
     "more-noise": added("a schedule with more noise", "toes", snr=0.1),

@@ -72,7 +72,10 @@ def spent(call) -> float:
 
 def recipe_of(name: str) -> DanceRecipe:
     """A training of a network; how many songs there are does not change the time of a step."""
-    return DanceRecipe(f"dance-time.{name}", NETWORKS[name], 1, songs=2, seconds=8.0, batch=BATCH)
+    return DanceRecipe(
+        f"dance-time.{name}", NETWORKS[name], steps=1, songs=2, seconds=8.0, batch=BATCH,
+        kinematic=None, changes=0.0, toes=0.0, gain_noise=0.0,
+    )  # fmt: skip
 
 
 def time_records(rounds: int, command: str) -> list[dict]:

@@ -67,7 +67,7 @@ def places(claims: list[Claim], records: dict[str, dict]) -> dict[str, str]:
     verdicts = [claim.verdict(records) for claim in claims]
     found = {f"number of claims: {word}": str(verdicts.count(word))
              for word in (AGREES, DIFFERS, OPEN, MISSING)}  # fmt: skip
-    found["number of claims"] = str(len(claims))
+    found["number of claims"] = str(len(claims) - verdicts.count(MISSING))
     return found | {"claims": _table(claims, verdicts, records)}
 
 

@@ -61,7 +61,7 @@ class Continued:
 
 
 def continued(walker: Walker, window: Window) -> dict[str, Continued]:
-    """As `Walker.walk` has it, and the same sample without the clean-up."""
+    """As `Walker.walk` has it, in the recording's size, and the same without the clean-up."""
     T_h = walker.config.T_h
     start = Start.of(window.given, window.control, T_h)
     past, steer = start.past.reshape(T_h, -1), start.control
@@ -72,7 +72,8 @@ def continued(walker: Walker, window: Window) -> dict[str, Continued]:
         "real.": clean_up(whole, FPS, known)[-len(poses) :],
         "real.unblended.": start.in_world(poses),
     }
-    return {name: Continued(world, path) for name, world in worlds.items()}
+    path = path * [start.size, start.size, 1.0]
+    return {name: Continued(start.size * world, path) for name, world in worlds.items()}
 
 
 def row_of(window: Window, made: Continued) -> dict[str, float]:

@@ -52,7 +52,7 @@ def measures_of_persons(walker: Walker, found: Sequence[Window]) -> list[Measure
     same = [Start.of(one.given, constant_control(SPEED, seconds=ahead), T_h) for one in found]
     late = round(LATE * FPS)
     made = [
-        gait_style(start.in_world(new[0])[-late:])
+        gait_style(start.size * start.in_world(new[0])[-late:])
         for start, new in zip(same, continuations(walker, same, 1), strict=True)
     ]
     pasts = [gait_style(one.given.positions) for one in found]
