@@ -132,7 +132,7 @@ class Network:
     """A kind of network: its class and its configuration."""
 
     performer: str
-    model: Callable[..., Any]
+    model: type[nn.Module]
     config: type
 
 
@@ -213,5 +213,5 @@ def network(config: Config) -> Any:
     )
 
 
-def _full_name(kind: Any) -> str:
+def _full_name(kind: type) -> str:
     return f"{kind.__module__}.{kind.__qualname__}"

@@ -153,6 +153,8 @@ def train_dancer(
     if ear and (wanted := getattr(recipe.config, "ear", None)) != ear.ear.config:
         needs = f"needs an ear with {wanted}" if wanted else "has no ear"
         raise ValueError(f"{recipe.name} {needs}; the ear that is given has {ear.ear.config}")
+    if getattr(recipe.config, "ear", None) and not (ear or recipe.ear):
+        raise ValueError(f"{recipe.name} needs an ear: pass `ear`, or a recipe with one")
     made_of = "music.varied and data_synth.dancing" if recipe.config.C else "mixed"
     source = f"data_synth.{made_of}, synthetic" if windows is None else "given windows"
     windows = training_windows(recipe) if windows is None else windows
@@ -163,8 +165,7 @@ def train_dancer(
     facts: dict[str, Any] = {"windows": len(windows)} | bones_of(windows)
     if getattr(recipe.config, "ear", None):
         if ear is None:
-            if not recipe.ear:
-                raise ValueError(f"{recipe.name} needs an ear: pass `ear`, or a recipe with one")
+            assert recipe.ear  # checked above
             ear = ear_of(recipe.ear, run_file.parent, log, device)
         model.ear.load_state_dict(ear.hearing(windows.mel_scaler).state_dict())
         about["ear"] = digest_of_tensors(ear.ear.state_dict())[:16]

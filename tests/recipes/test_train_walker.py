@@ -22,6 +22,7 @@ from motiondiff_edu.recipes.walker import (
     SHIPPED,
     WALKER_TRUNK,
     WalkerRecipe,
+    prepared,
     train,
     training_clips,
 )
@@ -52,6 +53,18 @@ def test_a_recipe_becomes_a_walker_with_its_card(tmp_path: Path):
         and sitting["threads"] == torch.get_num_threads()
     )
     assert card["parameters"] == sum(p.numel() for p in walker.model.parameters())
+
+
+def test_what_a_training_begins_with_is_the_recipes():
+    """Its noise schedule, its seed's first weights, its dropout."""
+    clips = training_clips(SHORT)
+    leap, linear = (prepared(replace(SHORT, schedule=one), clips) for one in ("leap", "linear"))
+    assert leap.schedule.name.startswith("leap") and linear.schedule.name.startswith("linear")
+    assert not torch.equal(leap.schedule.beta, linear.schedule.beta)
+    assert torch.equal(leap.model.future_in.weight, linear.model.future_in.weight)
+    other = prepared(replace(SHORT, seed=1, dropout=P_D), clips)
+    assert not torch.equal(other.model.future_in.weight, leap.model.future_in.weight)
+    assert other.dropout.schedule is other.schedule and leap.dropout is None
 
 
 LIKE_SHIPPED = replace(WALKER_TRUNK, config=TINY, steps=8, batch=3, clips=2, seconds=2.0)
@@ -222,3 +235,11 @@ def test_what_is_shipped_has_a_recipe_and_the_papers_one_is_the_papers():
 
 def test_the_commit_of_a_folder_that_is_no_checkout(tmp_path: Path):
     assert commit_of(tmp_path) == "not in a checkout"
+
+
+def test_the_printed_recipe_is_the_papers():
+    """MoDiff IV-A: Adam, 5e-5, batch 64, diffusion dropout, eps, nothing of ours."""
+    recipe = RECIPES["walker-printed"]
+    assert (recipe.optimizer, recipe.lr, recipe.batch) == ("adam", 5e-5, 64)
+    assert (recipe.past_noise, recipe.held_control, recipe.schedule) == (0, 0, "linear")
+    assert (recipe.config.target, recipe.config.skip, recipe.dropout) == ("eps", False, P_D)
