@@ -18,7 +18,7 @@ from . import body
 from .body import GREY, INK
 from .noise import histogram
 from .skeleton import SIDES, draw_pose, name_row
-from .style import DASHES, LARGE, MARKERS, MEDIUM, OKABE_ITO, SMALL, figure, legend, table
+from .style import DASHES, LARGE, MARKERS, MEDIUM, OKABE_ITO, SMALL, figure, legend
 
 # ---- repairs -------------------------------------------------------------------------------------
 GHOST = "#009E73"
@@ -198,31 +198,6 @@ def by_fault(
         axis.set_xticks([1, 2, 5, 10, 20], ["1", "2", "5", "10", "20"])
         axis.set_xticks([], minor=True)
         axis.set_yticklabels(names if axis is axes[0] else [])
-    return fig
-
-
-def rate_map(
-    panels: Mapping[str, Float[np.ndarray, "R M"]],
-    rates: Sequence[str],
-    missing: Sequence[str],
-    words: str,
-) -> Figure:
-    """A map for each measure: dropout rates in rows, missing shares of the past in columns.
-
-    The numbers are errors, so small is good. Colours compare within a column; the worst rate for a
-    missing share is dark.
-    """
-    fig, axes = figure(1.2 + 5.0 * len(panels), 1.4 + 0.5 * len(rates), words, 1, len(panels))
-    for axis, (measure, errors) in zip(axes, panels.items(), strict=True):
-        low, high = errors.min(0), errors.max(0)
-        shade = (errors - low) / np.maximum(high - low, 1e-12)
-        axis.imshow(shade, cmap="Oranges", vmin=0, vmax=1.6, aspect="auto")
-        for (row, column), error in np.ndenumerate(errors):
-            weight = "bold" if error == low[column] else "normal"
-            axis.text(column, row, f"{error:.3g}", ha="center", va="center", fontweight=weight)
-        table(axis, rates, missing)
-        axis.set_xlabel(f"share of the joints missing: {measure}", fontsize=MEDIUM)
-    axes[0].set_ylabel("rate of dropout", fontsize=MEDIUM)
     return fig
 
 

@@ -189,9 +189,7 @@ def test_pages_of_a_folder(executed, tmp_path):
     written = pages(executed, tmp_path / "site")
     names = [path.relative_to(tmp_path / "site").as_posix() for path in written]
     assert names[:2] == ["01_a.html", "02_b.html"] and names[-1] == "index.html"
-    assert (
-        "docs/RESULTS.html" in names and (tmp_path / "site/docs/results/dropout-map.png").is_file()
-    )
+    assert "docs/RESULTS.html" in names and (tmp_path / "site/docs/results/repairs.png").is_file()
     page = written[0].read_text()
     assert "<title>01 Motion as tensors</title>" in page and 'href="02_b.html">02 →' in page
     assert "1 &lt; 2" in page and "@font-face" in page

@@ -4,7 +4,7 @@
 
 Without --only, all parts are measured for which there are shipped weights; a name that is not known
 lists all parts. --full adds the sweeps that train, for minutes or hours a variant:
-walker-departures (from MoDiff to our walker), dancer-departures, words-budget and mend-map. One
+walker-departures (from MoDiff to our walker), dancer-departures and words-budget. One
 variant of a sweep is a part as well: walker-departures.leap, dancer-departures.ear. Otherwise
 their records stay as they are. A training that was killed continues. By name alone are measured:
 what needs recordings, with MOTIONDIFF_REAL_DATA (recordings, recordings-inbetweens,
@@ -43,7 +43,7 @@ from .page.render import render
 from .recordings import continuations, persons, reconstructions, trainings
 from .recordings import inbetweens as recorded_inbetweens
 from .recordings import windows as recorded
-from .repairs import both, dropout, mend, repair
+from .repairs import both, mend, repair
 from .repairs.trials import names_of
 from .sweep import Sweep, Variant, run
 from .walks import departures as walker_departures
@@ -192,10 +192,6 @@ SWEEPS = {
         dance_departures.VARIANTS,
         lambda c, runs: dance_departures.sweep(
             c.of(dance_departures.FULL, dance_departures.QUICK), runs)),
-    "mend-map": Trained(
-        dropout.VARIANTS,
-        lambda c, runs: dropout.sweep(c.of(dropout.MAP_FULL, dropout.MAP_QUICK), runs,
-                                      c.bench.trials)),
     "words-budget": Trained(
         word_budget.VARIANTS,
         lambda c, runs: word_budget.sweep(c.of(word_budget.FULL, word_budget.QUICK), runs)),

@@ -2,10 +2,8 @@
 
 from pathlib import Path
 
-import numpy as np
-
 from motiondiff_edu._files import replacing
-from motiondiff_edu.viz.repairs import by_fault, over_gaps, rate_map
+from motiondiff_edu.viz.repairs import by_fault, over_gaps
 
 SIDES = ("value", "low", "high")
 GAPS = (5, 15, 30, 60)
@@ -33,14 +31,11 @@ REPAIRS = {
     "rmse_meanpose_cm": "mean pose",
 }
 FAULTS = ("arm", "leg", "frames", "bursts")
-RATES = ("00", "05", "10", "15", "25", "50", "75")  # of dropout, per cent
-MISSING = (0, 15, 30, 50, 70, 100)  # per cent of the joints
 
 
 def draw(records: dict[str, dict], folder: Path) -> None:
     """Write each picture whose records are there."""
     for name, make in (
-        ("dropout-map", dropout_map),
         ("repairs", repairs),
         ("inbetween", in_betweens),
     ):
@@ -50,21 +45,6 @@ def draw(records: dict[str, dict], folder: Path) -> None:
             continue
         with replacing(folder / f"{name}.png") as aside:
             figure.savefig(aside, dpi=110, format="png")
-
-
-def dropout_map(records: dict[str, dict]):
-    """Errors by the rate of dropout in training and the share of joints missing."""
-    panels = {
-        words: np.array(
-            [[records[f"mend-map.{r}.missing-{m}.{kind}"]["value"] for m in MISSING] for r in RATES]
-        )
-        for words, kind in (("bone RMSE, cm", "bone_cm"), ("adherence, m/s", "adherence_mps"))
-    }
-    words = (
-        "Errors of the next ten frames, by the rate of dropout in training and the share of joints "
-        "missing."
-    )
-    return rate_map(panels, [f"{int(r)}%" for r in RATES], [f"{m} %" for m in MISSING], words)
 
 
 def repairs(records: dict[str, dict]):
