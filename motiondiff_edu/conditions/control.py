@@ -1,4 +1,4 @@
-"""Control for the walker: from a joystick, constant, or held (`drawn_path`: along a path).
+"""Control for the walker: from a joystick, or constant (`drawn_path`: along a path).
 
 A control is (T, 3): forward m/s, left m/s, yaw rad/s (counter-clockwise from above); row t takes
 root[t] to root[t+1]. Further columns are a condition of your own (docs/EXTENDING.md).
@@ -31,18 +31,6 @@ def constant_control(
     Notebook: 00
     """
     return np.tile([float(forward), float(left), float(yaw)], (round(seconds * fps), 1))
-
-
-def hold(control: Float[np.ndarray, "T 3"], t: int) -> Float[np.ndarray, "T 3"]:
-    """The control as known at frame t: rows after t repeat row t, for the future is not known.
-
-    Raises IndexError where there is no row t.
-    """
-    if not 0 <= t < len(control):
-        raise IndexError(f"control has rows 0 to {len(control) - 1}, row {t} cannot be held")
-    held = control.copy()
-    held[t + 1 :] = control[t]
-    return held
 
 
 def splice(

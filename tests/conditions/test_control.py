@@ -3,18 +3,12 @@
 import numpy as np
 import pytest
 
-from motiondiff_edu.conditions.control import as_long, constant_control, hold, joystick, splice
+from motiondiff_edu.conditions.control import as_long, constant_control, joystick, splice
 
 
-def test_constant_and_hold():
+def test_a_constant_control_is_the_same_in_all_rows():
     control = constant_control(1, 0.5, -0.25, seconds=2)
     assert control.shape == (40, 3) and np.array_equal(control[7], [1, 0.5, -0.25])
-    ramp = np.arange(15.0).reshape(5, 3)
-    held = hold(ramp, 2)
-    assert np.array_equal(held[:3], ramp[:3]) and np.array_equal(held[3:], np.tile(ramp[2], (2, 1)))
-    assert ramp[4, 0] == 12, "the given control was changed"
-    with pytest.raises(IndexError, match="rows 0 to 4, row 5"):
-        hold(ramp, 5)
 
 
 def test_a_spliced_control_leads_into_the_first_new_frame():
