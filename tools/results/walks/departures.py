@@ -1,9 +1,10 @@
 """What each departure of the walker is worth at its own size, from the simplest recipe up.
 
 `base` is MoDiff at the shipped width: eps with the skip, Adam, the linear schedule, diffusion
-dropout, control held in half of the windows, and the plain loss. Each other variant adds what its words say to another one. A training
-has a quarter of the shipped walker's steps. Walks are sampled as `Walker.walk` does it, by DDIM in
-ten steps with held control, and measured before and after the clean-up.
+dropout, control held in half of the windows, and the plain loss. Each other variant adds what its
+words say to another one. A training has a quarter of the shipped walker's steps. Walks are sampled
+as `Walker.walk` does it, by DDIM in ten steps with held control, and measured before and after the
+clean-up.
 docs/results/walker-departures/plan.json has the validation loss of `base` for each rate that was
 tried, after 2,000 steps (Adam and Muon on other unseen clips each); an optimiser has the rate with
 the smallest one. Muon gained most of the first departures, so the next ones are added to it.
