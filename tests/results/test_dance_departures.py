@@ -134,7 +134,7 @@ def test_the_transformer_that_is_timed_is_of_the_size_of_the_unet():
 
 def test_what_trains_is_run_when_asked_for_only():
     weights = {"dancer"}
-    lines = {"walker": Walks("walker", "walker")}
+    lines = {"walker": Walks("walker", "walker", 10)}
     plain = command.parts_of([], False, lines, weights)  # there are no weights of that walker
     assert set(plain) == {
         "dancer", "unheard", "footsteps", "dance-data", "attention", "dance-time", "known-answer",

@@ -17,16 +17,13 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from jaxtyping import Float
 
 from data_synth.walking import dataset
 from motiondiff_edu.diffusion_dropout import P_D
 from motiondiff_edu.metrics.distributions import spread
 from motiondiff_edu.metrics.walks import ROBUST, adherence, footsteps, heel_speed, skating
 from motiondiff_edu.modiff import MODIFF_SMALL
-from motiondiff_edu.motion.cleanup import clean_up
-from motiondiff_edu.motion.root_frame import root_path, to_root_frame, to_world
-from motiondiff_edu.motion.skeleton import TOES, J
+from motiondiff_edu.motion.skeleton import TOES
 from motiondiff_edu.performers.walker import STEPS, Walker
 from motiondiff_edu.recipes.walker import WalkerRecipe, train, training_clips
 
@@ -34,17 +31,17 @@ from ..repairs.trials import SHARE, continued
 from ..sweep import Rows, Sweep, Variant, differences, further, tuned_rate
 from .parts import size_of_network
 from .scores import (
+    CLEANED,
     EDGE,
     FPS,
     Kind,
-    over_floor,
     ratio,
     ratio_of_roots,
     root_mean,
     shuffled_adherence,
     squared_bone_error,
 )
-from .trials import T_H, UNSEEN, Choices, Trials, choices, rollouts_of, walker_generate
+from .trials import T_H, UNSEEN, Choices, Trials, choices, cleaned, rollouts_of, walker_generate
 
 PLAN = Path(__file__).parents[3] / "docs" / "results" / "walker-departures" / "plan.json"
 BASE = WalkerRecipe(
@@ -105,18 +102,6 @@ def material(size: Size) -> tuple[Trials, Choices]:
     return Trials.of(clips), choices(size.pasts, size.each)
 
 
-def cleaned(made: Float[np.ndarray, "N n J 3"], trials: Trials) -> Float[np.ndarray, "N n J 3"]:
-    """Rollouts after the clean-up of `Walker.walk`, in the root frame again."""
-    found = []
-    for past, new, control in zip(trials.past, made, trials.control, strict=True):
-        rows = control[: len(past) + len(new)]
-        known = np.zeros((len(rows), J), bool)
-        known[: len(past)] = True
-        whole = clean_up(to_world(np.concatenate([past, new]), rows), FPS, known)
-        found.append(to_root_frame(whole, *root_path(rows))[0][len(past) :])
-    return np.stack(found)
-
-
 def rows_of(walker: Walker, size: Size) -> Rows:
     """What is measured of each walk; spreads and steps are repeated to as many rows."""
     trials, asked = material(size)
@@ -160,8 +145,7 @@ KINDS = {
     "drift_bone_ratio": Kind("ratio", ("bone_last", "bone_first"), ratio_of_roots),
     "drift_adherence_ratio": Kind("ratio", ("adherence_last", "adherence_first"), ratio),
     "skating_mps": Kind("m/s", ("skating",), np.nanmean),
-    "finished_skating_over_data": Kind("ratio", ("skating_clean", "skating_data"), over_floor),
-    "cleanup_moves_toes_cm": Kind("cm", ("toes_moved",), lambda far: 100 * far.mean()),
+    **CLEANED,
     "diversity_over_data": Kind("ratio", ("spread", "spread_data"), ratio),
     "footsteps_robust_over_data": Kind("ratio", ("steps", "steps_data"), ratio),
 }

@@ -13,13 +13,24 @@ import numpy as np
 from safetensors import safe_open
 
 from motiondiff_edu._files import replacing
-from motiondiff_edu.metrics.walks import PAPER, ROBUST
+from motiondiff_edu.metrics.walks import PAPER, ROBUST, skating
 from motiondiff_edu.modiff import MoDiffConfig
+from motiondiff_edu.motion.skeleton import TOES
+from motiondiff_edu.performers.walker import STEPS
 from motiondiff_edu.pretrained import checkpoints
 
 from . import steps_table
-from .scores import Measure, diversity, score
-from .trials import UNSEEN, Choices, Trials, choices, rollouts_of, unseen, walker_generate
+from .scores import CLEANED, Measure, diversity, measures, score
+from .trials import (
+    UNSEEN,
+    Choices,
+    Trials,
+    choices,
+    cleaned,
+    rollouts_of,
+    unseen,
+    walker_generate,
+)
 
 CACHE = Path("build/results")  # rollouts are kept, so that a new metric needs no new ones
 PACKAGE = Path(checkpoints.__file__).parents[1]
@@ -124,7 +135,7 @@ class Walks:
 
     prefix: str
     name: str
-    steps: int | None = None
+    steps: int | None  # of DDIM, as `Walker.walk` has it; None: DDPM with all
     hold: bool = True
     choose: bool = True  # also measure the diversity
 
@@ -132,6 +143,7 @@ class Walks:
         trials = bench.trials
         walks = bench.rollouts(self.name, self.steps, self.hold, "walks")
         found = score(walks, trials.asked, trials.truth)
+        found += cleaned_score(walks, trials)
         if self.choose:
             found += diversity(
                 bench.rollouts(self.name, self.steps, self.hold, "choices"), bench.choices.drawn
@@ -142,13 +154,24 @@ class Walks:
 LINES = {
     line.prefix: line
     for line in (
-        Walks("walker", "walker"),
-        Walks("walker-plain", "walker-plain", choose=False),
-        Walks("walker-printed", "walker-printed", choose=False),
-        Walks("walker-ddim10", "walker", steps=10),
-        Walks("walker-lookahead", "walker", hold=False, choose=False),
+        Walks("walker", "walker", STEPS),
+        Walks("walker-plain", "walker-plain", STEPS, choose=False),
+        Walks("walker-printed", "walker-printed", None, choose=False),
+        Walks("walker-ddpm", "walker", None, choose=False),
+        Walks("walker-lookahead", "walker", STEPS, hold=False, choose=False),
     )
 }
+
+
+def cleaned_score(walks: np.ndarray, trials: Trials) -> list[Measure]:
+    """What the clean-up of `walk` leaves of sliding, and how far it moves the toes."""
+    clean = cleaned(walks, trials)
+    rows = {
+        "skating_clean": skating(clean, trials.asked),
+        "skating_data": skating(trials.truth, trials.asked),
+        "toes_moved": np.linalg.norm((clean - walks)[:, :, TOES], axis=-1).mean((1, 2)),
+    }
+    return measures(CLEANED, rows)
 
 
 def size_of_network(config: MoDiffConfig) -> str:

@@ -184,6 +184,10 @@ WALKS = {
     "planted_share": Kind("share", ("planted",), np.nanmean),
     "planted_share_data": Kind("share", ("planted_data",), np.nanmean),
 }
+CLEANED = {
+    "finished_skating_over_data": Kind("ratio", ("skating_clean", "skating_data"), over_floor),
+    "cleanup_moves_toes_cm": Kind("cm", ("toes_moved",), lambda far: 100 * far.mean()),
+}
 DIVERSITY = {
     "diversity_m": Kind("m", ("own",), np.mean),
     "diversity_data_m": Kind("m", ("data",), np.mean),

@@ -9,7 +9,10 @@ from jaxtyping import Float
 
 from data_synth.walking import continuations, dataset
 from motiondiff_edu import rollout
+from motiondiff_edu.motion.cleanup import clean_up
 from motiondiff_edu.motion.clip import Clip
+from motiondiff_edu.motion.root_frame import root_path, to_root_frame, to_world
+from motiondiff_edu.motion.skeleton import J
 
 from .scores import FPS
 
@@ -51,6 +54,18 @@ class Trials:
 def unseen(n: int = 100, seconds: float = SECONDS) -> Trials:
     """n trials of `seconds` with pasts and controls that are in no training set."""
     return Trials.of(dataset(n, seconds + T_H / FPS, seed=UNSEEN))
+
+
+def cleaned(made: Float[np.ndarray, "N n J 3"], trials: Trials) -> Float[np.ndarray, "N n J 3"]:
+    """Rollouts after the clean-up of `Walker.walk`, in the root frame again."""
+    found = []
+    for past, new, control in zip(trials.past, made, trials.control, strict=True):
+        rows = control[: len(past) + len(new)]
+        known = np.zeros((len(rows), J), bool)
+        known[: len(past)] = True
+        whole = clean_up(to_world(np.concatenate([past, new]), rows), FPS, known)
+        found.append(to_root_frame(whole, *root_path(rows))[0][len(past) :])
+    return np.stack(found)
 
 
 def walker_generate(
