@@ -17,7 +17,7 @@ from motiondiff_edu.recipes.dancer import UNCONDITIONAL, train_dancer, training_
 TINY = replace(
     UNCONDITIONAL,
     config=replace(UNCONDITIONAL.config, widths=(16, 24), S=20),
-    motions=4,
+    songs=4,
     seconds=8.0,
     steps=3,
     batch=3,
