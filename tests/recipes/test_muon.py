@@ -102,5 +102,5 @@ def test_a_resumed_run_continues_bit_for_bit(tmp_path: Path):
 
 
 def test_a_network_without_blocks_is_refused():
-    with pytest.raises(ValueError, match="Sequential has no block.*write optimizer=\"adam\""):
+    with pytest.raises(ValueError, match='Sequential has no block.*write optimizer="adam"'):
         MuonAndAdam(nn.Sequential(nn.Linear(3, 4)))
