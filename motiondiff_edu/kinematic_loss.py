@@ -47,10 +47,7 @@ class KinematicWeights:
     def loss_for(
         self, body: "Body", planted: Bool[Tensor, "B T 2"]
     ) -> Callable[[Motion, Motion], Float[Tensor, "B"]]:
-        """L_k of motions of these bodies, as `training_loss` takes it.
-
-        Source: MoFusion eq. 4
-        """
+        """L_k of motions of these bodies, as `training_loss` takes it (`kinematic_parts`)."""
         return lambda x0_hat, x0: self.total(kinematic_parts(x0_hat, x0, body, planted))
 
 
