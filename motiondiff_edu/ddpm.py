@@ -72,16 +72,19 @@ class Schedule:
         Raises IndexError for a step below `first` or above S.
         """
         s = checked_step(s, self.S, first)
+        tables, numbers = self._tables
         if not isinstance(s, Tensor):
-            return StepNumbers(*self._tables[:, s].tolist())
-        rows = self._tables.to(x.device)[:, s].to(x)
+            return numbers[s]
+        rows = tables.to(x.device)[:, s].to(x)
         return StepNumbers(*rows.reshape(len(rows), -1, *[1] * (x.dim() - 1)).unbind())
 
     @cached_property
-    def _tables(self) -> Float[Tensor, "6 S_plus_1"]:
+    def _tables(self) -> tuple[Float[Tensor, "6 S_plus_1"], list[StepNumbers]]:
+        """The numbers of all steps, and the same read once: a tensor is slow to give a number."""
         signal, noise = self.alpha_bar.sqrt(), (1 - self.alpha_bar).sqrt()
         rows = self.beta, self.alpha, self.alpha_bar, signal, noise, posterior_variance(self)
-        return torch.stack(rows)
+        tables = torch.stack(rows)
+        return tables, [StepNumbers(*row) for row in tables.T.tolist()]
 
 
 def make_schedule(beta: Float[Tensor, "S"], name: str = "schedule") -> Schedule:

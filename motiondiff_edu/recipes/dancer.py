@@ -150,10 +150,11 @@ def train_dancer(
     Raises ValueError when the run in `run_file` was begun with other settings, or `ear` is not of
     the recipe's kind.
     """
-    if ear and (wanted := getattr(recipe.config, "ear", None)) != ear.ear.config:
-        needs = f"needs an ear with {wanted}" if wanted else "has no ear"
+    own = getattr(recipe.config, "ear", None)
+    if ear and own != ear.ear.config:
+        needs = f"needs an ear with {own}" if own else "has no ear"
         raise ValueError(f"{recipe.name} {needs}; the ear that is given has {ear.ear.config}")
-    if getattr(recipe.config, "ear", None) and not (ear or recipe.ear):
+    if own and not (ear or recipe.ear):
         raise ValueError(f"{recipe.name} needs an ear: pass `ear`, or a recipe with one")
     made_of = "music.varied and data_synth.dancing" if recipe.config.C else "mixed"
     source = f"data_synth.{made_of}, synthetic" if windows is None else "given windows"
@@ -163,7 +164,7 @@ def train_dancer(
     model = network(recipe.config)
     about = {"network": type(model).__name__, "data": digest(windows)}
     facts: dict[str, Any] = {"windows": len(windows)} | bones_of(windows)
-    if getattr(recipe.config, "ear", None):
+    if own:
         if ear is None:
             assert recipe.ear  # checked above
             ear = ear_of(recipe.ear, run_file.parent, log, device)
@@ -217,8 +218,9 @@ def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> L
         if music is not None and recipe.no_music:
             left_out = torch.rand(len(mel), generator=generator) < recipe.no_music
             music = without(music, left_out.to(device))
-        body = dance_frame.body_of(scaler.to(device))
-        kinematic = weights.loss_for(body, planted) if weights else None
+        kinematic = None
+        if weights:
+            kinematic = weights.loss_for(dance_frame.body_of(scaler.to(device)), planted)
         return training_loss(
             model, (x0, music), schedule, generator,
             kinematic=kinematic, lambda_k=lambda_k, loss=data,

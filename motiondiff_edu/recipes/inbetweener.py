@@ -234,8 +234,10 @@ def loss_of(recipe: InbetweenerRecipe, windows: DanceWindows, schedule: Schedule
         lines = model.lines(motion, columns, frame.to(device))
         squares = lines.scale.square()
         loss = weighted(data, squares / squares.mean((1, 2), keepdim=True))
-        body = body_around(lines, scaler.to(device))
-        kinematic = weights.loss_for(body, planted.to(device)) if weights else None
+        kinematic = None
+        if weights:
+            body = body_around(lines, scaler.to(device))
+            kinematic = weights.loss_for(body, planted.to(device))
         return training_loss(
             model, (lines.remainder(motion), lines), schedule, generator,
             kinematic=kinematic, lambda_k=lambda_k, loss=loss,

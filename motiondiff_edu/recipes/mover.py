@@ -295,8 +295,9 @@ def loss_of(
         if isinstance(model, PlannedMoFusion):
             planning = training_loss(model.planner, (plan, contexts.plan), schedule, generator)
             performing = Performing(model, plan)
-        body = moving_frame.body_of(scaler.to(x0.device))
-        kinematic = weights.loss_for(body, planted) if weights else None
+        kinematic = None
+        if weights:
+            kinematic = weights.loss_for(moving_frame.body_of(scaler.to(x0.device)), planted)
         return planning + training_loss(
             performing, (x0, contexts), schedule, generator,
             kinematic=kinematic, lambda_k=lambda_k, loss=data,

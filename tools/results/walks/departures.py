@@ -23,7 +23,6 @@ from motiondiff_edu.diffusion_dropout import P_D
 from motiondiff_edu.metrics.distributions import spread
 from motiondiff_edu.metrics.walks import ROBUST, adherence, footsteps, heel_speed, skating
 from motiondiff_edu.modiff import MODIFF_SMALL
-from motiondiff_edu.motion.skeleton import TOES
 from motiondiff_edu.performers.walker import STEPS, Walker
 from motiondiff_edu.recipes.walker import WalkerRecipe, train, training_clips
 
@@ -41,7 +40,16 @@ from .scores import (
     shuffled_adherence,
     squared_bone_error,
 )
-from .trials import T_H, UNSEEN, Choices, Trials, choices, cleaned, rollouts_of, walker_generate
+from .trials import (
+    T_H,
+    UNSEEN,
+    Choices,
+    Trials,
+    choices,
+    cleaned_rows,
+    rollouts_of,
+    walker_generate,
+)
 
 PLAN = Path(__file__).parents[3] / "docs" / "results" / "walker-departures" / "plan.json"
 BASE = WalkerRecipe(
@@ -110,7 +118,6 @@ def rows_of(walker: Walker, size: Size) -> Rows:
         continued(walker, trials, share, frames, steps=STEPS) for share in (0.0, SHARE)
     )
     first, last = slice(None, EDGE), slice(-EDGE, None)
-    clean = cleaned(whole, trials)
     own = spread(rollouts_of(walker_generate(walker, STEPS), asked))
     found = {
         "bone": squared_bone_error(whole),
@@ -123,10 +130,7 @@ def rows_of(walker: Walker, size: Size) -> Rows:
         "adherence_data": adherence(trials.truth, trials.asked),
         "adherence_shuffled": shuffled_adherence(whole, trials.asked),
         "skating": skating(whole, trials.asked),
-        "skating_data": skating(trials.truth, trials.asked),
-        "skating_clean": skating(clean, trials.asked),
-        "toes_moved": np.linalg.norm((clean - whole)[:, :, TOES], axis=-1).mean((1, 2)),
-    }
+    } | cleaned_rows(whole, trials)
     for name, poses in (("steps", whole), ("steps_data", trials.truth)):
         each = [footsteps([one], ROBUST).count for one in heel_speed(poses, trials.asked)]
         found[name] = np.array(each)

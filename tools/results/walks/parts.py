@@ -13,9 +13,8 @@ import numpy as np
 from safetensors import safe_open
 
 from motiondiff_edu._files import replacing
-from motiondiff_edu.metrics.walks import PAPER, ROBUST, skating
+from motiondiff_edu.metrics.walks import PAPER, ROBUST
 from motiondiff_edu.modiff import MoDiffConfig
-from motiondiff_edu.motion.skeleton import TOES
 from motiondiff_edu.performers.walker import STEPS
 from motiondiff_edu.pretrained import checkpoints
 
@@ -26,7 +25,7 @@ from .trials import (
     Choices,
     Trials,
     choices,
-    cleaned,
+    cleaned_rows,
     rollouts_of,
     unseen,
     walker_generate,
@@ -143,7 +142,7 @@ class Walks:
         trials = bench.trials
         walks = bench.rollouts(self.name, self.steps, self.hold, "walks")
         found = score(walks, trials.asked, trials.truth)
-        found += cleaned_score(walks, trials)
+        found += measures(CLEANED, cleaned_rows(walks, trials))
         if self.choose:
             found += diversity(
                 bench.rollouts(self.name, self.steps, self.hold, "choices"), bench.choices.drawn
@@ -161,17 +160,6 @@ LINES = {
         Walks("walker-lookahead", "walker", STEPS, hold=False, choose=False),
     )
 }
-
-
-def cleaned_score(walks: np.ndarray, trials: Trials) -> list[Measure]:
-    """What the clean-up of `walk` leaves of sliding, and how far it moves the toes."""
-    clean = cleaned(walks, trials)
-    rows = {
-        "skating_clean": skating(clean, trials.asked),
-        "skating_data": skating(trials.truth, trials.asked),
-        "toes_moved": np.linalg.norm((clean - walks)[:, :, TOES], axis=-1).mean((1, 2)),
-    }
-    return measures(CLEANED, rows)
 
 
 def size_of_network(config: MoDiffConfig) -> str:

@@ -9,10 +9,11 @@ from jaxtyping import Float
 
 from data_synth.walking import continuations, dataset
 from motiondiff_edu import rollout
+from motiondiff_edu.metrics.walks import skating
 from motiondiff_edu.motion.cleanup import clean_up
 from motiondiff_edu.motion.clip import Clip
 from motiondiff_edu.motion.root_frame import root_path, to_root_frame, to_world
-from motiondiff_edu.motion.skeleton import J
+from motiondiff_edu.motion.skeleton import TOES, J
 
 from .scores import FPS
 
@@ -66,6 +67,16 @@ def cleaned(made: Float[np.ndarray, "N n J 3"], trials: Trials) -> Float[np.ndar
         whole = clean_up(to_world(np.concatenate([past, new]), rows), FPS, known)
         found.append(to_root_frame(whole, *root_path(rows))[0][len(past) :])
     return np.stack(found)
+
+
+def cleaned_rows(made: Float[np.ndarray, "N n J 3"], trials: Trials) -> dict[str, np.ndarray]:
+    """The rows of `scores.CLEANED`: what the clean-up leaves of sliding, how far it moves toes."""
+    clean = cleaned(made, trials)
+    return {
+        "skating_clean": skating(clean, trials.asked),
+        "skating_data": skating(trials.truth, trials.asked),
+        "toes_moved": np.linalg.norm((clean - made)[:, :, TOES], axis=-1).mean((1, 2)),
+    }
 
 
 def walker_generate(
