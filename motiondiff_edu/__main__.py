@@ -106,17 +106,7 @@ def _run(arguments: list[str] | None) -> int:
             else "a sentence or name of several words is put into quotes"
         )
         chosen.parser.error(f"{chosen.verb} does not know {' '.join(chosen.options)}; {why}")
-    if chosen.verb in _commands.VERBS:
-        return _commands.run(verb, chosen)
-    try:
-        return verb.run(chosen)
-    except BrokenPipeError:
-        raise
-    except Exception as error:
-        if not _commands.expected(error):
-            raise
-        print(_commands.message(error), file=sys.stderr)
-        return 1
+    return _commands.run(verb, chosen)
 
 
 if __name__ == "__main__":

@@ -21,14 +21,14 @@ def run(module: ModuleType, args: argparse.Namespace) -> int:
     """Run one verb, and return the exit status.
 
     An expected error is printed as one message, without a traceback; any other is a bug of the
-    program and keeps its traceback.
+    program and keeps its traceback. A verb that returns nothing has succeeded.
     """
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("default", UserWarning)
             warnings.showwarning = _as_a_note
             outputs.check_arguments(args)
-            module.run(args)
+            return module.run(args) or 0
     except KeyboardInterrupt:
         print("\nstopped; no incomplete file is left", file=sys.stderr)
         return STOPPED
@@ -39,7 +39,6 @@ def run(module: ModuleType, args: argparse.Namespace) -> int:
             raise
         print(f"{args.verb}: {message(error)}", file=sys.stderr)
         return 1
-    return 0
 
 
 def expected(error: Exception) -> bool:
