@@ -3,8 +3,8 @@
     python tools/front_picture.py [--frames FOLDER]
 
 Three panels: a path is drawn on the path pad, and the shipped walker walks it; the shipped dancer
-dances to a composed song; keyframes are pinned in the editor, one is changed, and the unconditional
-network makes the frames between. Each picture is a screenshot of the widget's page. `--frames`
+dances to a composed song; keyframes are pinned in the editor, one is changed, and the shipped
+in-betweener makes the frames between. Each picture is a screenshot of the widget's page. `--frames`
 writes every tenth picture as a PNG too, for looking at.
 """
 
@@ -122,7 +122,7 @@ def played(browser, folder: Path, player: Player, width: int) -> Iterator[Image.
 
 def editor_panel(browser, folder: Path) -> Iterator[Image.Image]:
     """The editor: three frames are pinned, a hand is moved, in-betweens are made and played."""
-    network = md.load("unconditional")
+    network = md.load("inbetweener")
     motion = walk(constant_control(1.0, seconds=4), seed=5).world()
     editor = Editor(motion, partial(inbetween, network, steps=25))
     with open_page(browser, viewport={"width": WIDTHS[2], "height": 900}) as page:
@@ -138,6 +138,8 @@ def editor_panel(browser, folder: Path) -> Iterator[Image.Image]:
         yield from pin_and_move(page, editor, shot)
         page.get_by_role("button", name="Generate").click()
         settled(page)
+        if editor.error:  # the page alone would show it, where this picture hides it
+            raise editor.error
         for t in range(len(motion)):
             page.evaluate("(t) => take({ frame: t })", t)
             yield shot()

@@ -34,6 +34,7 @@ from .scores import (
     EDGE,
     FPS,
     Kind,
+    excess,
     ratio,
     ratio_of_roots,
     root_mean,
@@ -127,7 +128,6 @@ def rows_of(walker: Walker, size: Size) -> Rows:
         "adherence": adherence(whole, trials.asked),
         "adherence_first": adherence(whole[:, first], trials.asked[:, first]),
         "adherence_last": adherence(whole[:, last], trials.asked[:, last]),
-        "adherence_data": adherence(trials.truth, trials.asked),
         "adherence_shuffled": shuffled_adherence(whole, trials.asked),
         "skating": skating(whole, trials.asked),
     } | cleaned_rows(whole, trials)
@@ -142,9 +142,7 @@ def rows_of(walker: Walker, size: Size) -> Rows:
 KINDS = {
     "bone_rmse_cm": Kind("cm", ("bone",), root_mean),
     "broken_over_whole": Kind("ratio", ("bone_broken", "bone"), ratio_of_roots),
-    "adherence_excess_mps": Kind(
-        "m/s", ("adherence", "adherence_data"), lambda own, data: np.nanmean(own) - np.nanmean(data)
-    ),
+    "adherence_excess_mps": Kind("m/s", ("adherence", "adherence_data"), excess),
     "adherence_shuffled_over_own": Kind("ratio", ("adherence_shuffled", "adherence"), ratio),
     "drift_bone_ratio": Kind("ratio", ("bone_last", "bone_first"), ratio_of_roots),
     "drift_adherence_ratio": Kind("ratio", ("adherence_last", "adherence_first"), ratio),

@@ -19,7 +19,7 @@ from motiondiff_edu.performers.walker import STEPS
 from motiondiff_edu.pretrained import checkpoints
 
 from . import steps_table
-from .scores import CLEANED, Measure, diversity, measures, score
+from .scores import FINISHED, Measure, diversity, measures, score
 from .trials import (
     UNSEEN,
     Choices,
@@ -142,7 +142,7 @@ class Walks:
         trials = bench.trials
         walks = bench.rollouts(self.name, self.steps, self.hold, "walks")
         found = score(walks, trials.asked, trials.truth)
-        found += measures(CLEANED, cleaned_rows(walks, trials))
+        found += measures(FINISHED, cleaned_rows(walks, trials))
         if self.choose:
             found += diversity(
                 bench.rollouts(self.name, self.steps, self.hold, "choices"), bench.choices.drawn

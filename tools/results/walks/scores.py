@@ -156,6 +156,11 @@ def ratio(over: Float[np.ndarray, "N"], under: Float[np.ndarray, "N"]) -> float:
     return np.nanmean(over) / np.nanmean(under)
 
 
+def excess(own: Float[np.ndarray, "N"], data: Float[np.ndarray, "N"]) -> float:
+    """Mean minus mean; each leaves out clips without a number."""
+    return np.nanmean(own) - np.nanmean(data)
+
+
 def over_floor(own: Float[np.ndarray, "N"], data: Float[np.ndarray, "N"]) -> float:
     """Mean sliding over that of the data, which counts as SKATING_FLOOR at least."""
     return np.nanmean(own) / max(np.nanmean(data), SKATING_FLOOR)
@@ -167,9 +172,7 @@ WALKS = {
     "bone_rmse_data_cm": Kind("cm", ("bones_data",), root_mean),
     "adherence_mps": Kind("m/s", ("own",), np.nanmean),
     "adherence_data_mps": Kind("m/s", ("data",), np.nanmean),
-    "adherence_excess_mps": Kind(
-        "m/s", ("own", "data"), lambda own, data: np.nanmean(own) - np.nanmean(data)
-    ),
+    "adherence_excess_mps": Kind("m/s", ("own", "data"), excess),
     "adherence_shuffled_over_own": Kind("ratio", ("shuffled", "own"), ratio),
     "drift_bone_ratio": Kind("ratio", ("bones_last", "bones_first"), ratio_of_roots),
     "drift_adherence_ratio": Kind("ratio", ("own_last", "own_first"), ratio),
@@ -187,6 +190,9 @@ WALKS = {
 CLEANED = {
     "finished_skating_over_data": Kind("ratio", ("skating_clean", "skating_data"), over_floor),
     "cleanup_moves_toes_cm": Kind("cm", ("toes_moved",), lambda far: 100 * far.mean()),
+}
+FINISHED = CLEANED | {
+    "finished_adherence_excess_mps": Kind("m/s", ("adherence_clean", "adherence_data"), excess),
 }
 DIVERSITY = {
     "diversity_m": Kind("m", ("own",), np.mean),

@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from data_synth.walking import continuations, dataset
 from motiondiff_edu import rollout
-from motiondiff_edu.metrics.walks import skating
+from motiondiff_edu.metrics.walks import adherence, skating
 from motiondiff_edu.motion.cleanup import clean_up
 from motiondiff_edu.motion.clip import Clip
 from motiondiff_edu.motion.root_frame import root_path, to_root_frame, to_world
@@ -70,11 +70,13 @@ def cleaned(made: Float[np.ndarray, "N n J 3"], trials: Trials) -> Float[np.ndar
 
 
 def cleaned_rows(made: Float[np.ndarray, "N n J 3"], trials: Trials) -> dict[str, np.ndarray]:
-    """The rows of `scores.CLEANED`: what the clean-up leaves of sliding, how far it moves toes."""
+    """The rows of `scores.FINISHED`: sliding and control after the clean-up, how far toes moved."""
     clean = cleaned(made, trials)
     return {
         "skating_clean": skating(clean, trials.asked),
         "skating_data": skating(trials.truth, trials.asked),
+        "adherence_clean": adherence(clean, trials.asked),
+        "adherence_data": adherence(trials.truth, trials.asked),
         "toes_moved": np.linalg.norm((clean - made)[:, :, TOES], axis=-1).mean((1, 2)),
     }
 
