@@ -150,7 +150,7 @@ def test_the_wheel_brings_its_command(elsewhere):
         home / "env" / ("Scripts/motiondiff-edu.exe" if os.name == "nt" else "bin/motiondiff-edu")
     )
     answer = subprocess.run([script, "demo", "99"], cwd=home, capture_output=True, text=True)
-    assert answer.returncode == 1 and answer.stderr.startswith("no notebook 99 in ")
+    assert answer.returncode == 1 and answer.stderr.startswith("demo: no notebook 99 in ")
     told = subprocess.run(
         [script, "lab", "--help"], cwd=home, capture_output=True, text=True
     ).stdout
