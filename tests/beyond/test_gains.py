@@ -23,7 +23,6 @@ NOT_MEASURED = {
     "turning_frame",
     "gain_noise",
     "self_attention",
-    "hearing",
     "loss_terms",
 }
 
