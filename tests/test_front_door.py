@@ -566,6 +566,8 @@ TOLD = {
     "md.Motion(w.positions, audio=np.zeros(9))": "audio needs its sample_rate in Hz",
     "md.Motion(w.positions, audio='abc', sample_rate=9)": "audio must be numbers (N,)",
     "md.Motion(w.positions, root='abc')": "root must be numbers (30, 3)",
+    "md.Motion(w.positions + 1j)": "positions must be numbers (frames, joints, 3)",
+    "md.Motion(w.positions, root=w.root + 1j)": "root must be numbers (30, 3)",
     "md.Motion(w.positions, sample_rate=2.7)": "sample_rate must be a whole number of hertz, not",
     "md.joystick([('3', 1.2, 0, 0)])": "turning), not ('3', 1.2, 0, 0)",
     "md.joystick([(3, 1.2, 0, 0)], fps=0)": "fps must be a number of frames a second above 0",
