@@ -357,9 +357,12 @@ def check_ending(path: str | Path) -> str:
 
 def _positions(positions, skeleton: Skeleton) -> np.ndarray:
     """A copy in float64.  Raises MotionError unless every joint is near the origin or missing."""
-    array = _real(positions, np.float64)
-    if array is None:
-        raise MotionError("positions must be numbers (frames, joints, 3) in metres")
+    try:
+        if np.iscomplexobj(positions):  # numpy would only drop the imaginary part
+            raise TypeError
+        array = np.array(positions, np.float64)
+    except (TypeError, ValueError):
+        raise MotionError("positions must be numbers (frames, joints, 3) in metres") from None
     if array.ndim != 3 or array.shape[-1] != 3 or not len(array):
         raise MotionError(
             f"positions must be (frames, joints, 3) in metres, with at least one frame; these are "
@@ -384,23 +387,16 @@ def _positions(positions, skeleton: Skeleton) -> np.ndarray:
     return array
 
 
-def _real(values, dtype: type) -> np.ndarray | None:
-    """A copy as an array; None for what is no array of real numbers."""
-    if np.iscomplexobj(values):  # numpy would only drop the imaginary part
-        return None
-    try:
-        return np.array(values, dtype)
-    except (TypeError, ValueError):
-        return None
-
-
 def _per_frame(values, name: str, shape: tuple[int, int], dtype: type) -> np.ndarray | None:
     """A copy of an array.  Raises MotionError unless it has a finite row for each frame."""
     if values is None:
         return None
-    array = _real(values, dtype)
-    if array is None:
-        raise MotionError(f"{name} must be numbers {shape}, a row for each frame")
+    try:
+        if np.iscomplexobj(values):
+            raise TypeError
+        array = np.array(values, dtype)
+    except (TypeError, ValueError):
+        raise MotionError(f"{name} must be numbers {shape}, a row for each frame") from None
     if array.shape != shape or not np.isfinite(array).all():
         what = f"has shape {array.shape}" if array.shape != shape else "has NaN or infinite values"
         raise MotionError(f"{name} {what}; it must be {shape}, a row for each frame")
