@@ -21,7 +21,6 @@ NAMES = [
 NOT_MEASURED = {
     "activity",
     "turning_frame",
-    "gain_noise",
     "self_attention",
     "loss_terms",
 }
