@@ -355,12 +355,17 @@ def check_ending(path: str | Path) -> str:
     return ending
 
 
+def _real(values, dtype: type) -> np.ndarray:
+    """A copy as an array.  Raises TypeError or ValueError unless these are real numbers."""
+    if np.iscomplexobj(values):  # numpy would only drop the imaginary part
+        raise TypeError("complex numbers")
+    return np.array(values, dtype)
+
+
 def _positions(positions, skeleton: Skeleton) -> np.ndarray:
     """A copy in float64.  Raises MotionError unless every joint is near the origin or missing."""
     try:
-        if np.iscomplexobj(positions):  # numpy would only drop the imaginary part
-            raise TypeError
-        array = np.array(positions, np.float64)
+        array = _real(positions, np.float64)
     except (TypeError, ValueError):
         raise MotionError("positions must be numbers (frames, joints, 3) in metres") from None
     if array.ndim != 3 or array.shape[-1] != 3 or not len(array):
@@ -392,9 +397,7 @@ def _per_frame(values, name: str, shape: tuple[int, int], dtype: type) -> np.nda
     if values is None:
         return None
     try:
-        if np.iscomplexobj(values):
-            raise TypeError
-        array = np.array(values, dtype)
+        array = _real(values, dtype)
     except (TypeError, ValueError):
         raise MotionError(f"{name} must be numbers {shape}, a row for each frame") from None
     if array.shape != shape or not np.isfinite(array).all():

@@ -22,8 +22,8 @@ from .networks import AnyNetwork, Config
 Own = TypeVar("Own", bound="Performer")  # the class of a performer, or of one made of it
 Watch = Callable[[Iterable[Step]], Iterable[Step]]  # wraps a loop, as `bar` does
 
-# default of DDIM: more change little (docs/RESULTS_ALL.md: walker-ddpm, words.steps50,
-# inbetween.steps50)
+# default of DDIM, but for dances: more change little (docs/RESULTS_ALL.md: walker-ddpm,
+# words.steps50, inbetween.steps50)
 STEPS = 10
 
 

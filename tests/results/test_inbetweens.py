@@ -110,6 +110,12 @@ def test_the_worst_gap_stands_under_the_bar(monkeypatch):
         inbetween, "filled", lambda shown, masked, truth, length, size: shifted(truth, length)
     )
 
+    monkeypatch.setattr(
+        inbetween,
+        "samples_of",
+        lambda shown, truth, known, size, draw: off(truth, known, size.steps / 1000)[None],
+    )
+
     def shifted(truth, length):
         known = middle(length)
         made = off(truth, known, length / 1000)
@@ -128,6 +134,9 @@ def test_the_worst_gap_stands_under_the_bar(monkeypatch):
             length / 100
         )
     assert records["inbetween.gap60_error_over_interpolation"]["value"] == pytest.approx(0.6)
+    more = records["inbetween.steps50.gap30.error_one_cm"]
+    assert more["value"] == pytest.approx(5) and more["seeds"]["steps"] == 50
+    assert records["inbetween.gap30.error_one_cm"]["seeds"]["steps"] == 10
     for kind in ("seam_jump_over_data", "npss_over_interpolation"):
         each = [records[f"inbetween.gap{length}.{kind}"]["value"] for length in GAPS]
         assert records[f"inbetween.{kind}"]["value"] == max(each) > min(each)

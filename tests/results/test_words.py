@@ -257,6 +257,8 @@ def test_all_records_are_made(monkeypatch, mover):
         "words.nearest_training_over_data",
     }
     assert wanted <= set(records)
+    steps = {name: records[name]["seeds"]["steps"] for name in ("words.fid", "words.steps50.fid")}
+    assert steps == {"words.fid": 10, "words.steps50.fid": 50}
 
 
 def test_on_all_cores_the_numbers_are_the_same(monkeypatch):

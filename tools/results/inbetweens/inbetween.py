@@ -27,12 +27,13 @@ from motiondiff_edu.performers.inbetweener import Inbetweener
 from motiondiff_edu.performers.performer import STEPS
 
 from ..walks.scores import Measure, measure_of, ratio
-from ..walks.trials import UNSEEN
+from ..walks.trials import MORE_STEPS, UNSEEN
 
 T = 100  # frames, as trained
 GAPS = (5, 15, 30, 60)
 BARS = (15, 30, 60)  # gaps that have a bar
-MORE_STEPS = 50  # of DDIM, to compare with the usual ones, in gaps of 30 frames
+COMPARED = 30  # frames of the gaps that are also filled with MORE_STEPS
+OF_SAMPLES = ("error_cm", "error_one_cm", "error_best_cm", "seam_jump_over_data", "skating_mps")
 
 
 @dataclass(frozen=True)
@@ -92,12 +93,24 @@ def filled(
     known, draw = middle(length), torch.Generator().manual_seed(length)
     options = {"steps": size.masked_steps, "generator": draw}
     holes = np.where(known[..., None], truth, np.nan)
-    how = {"samples": size.samples, "steps": size.steps, "generator": draw}
-    made = [inbetween(shown, one, known, **how) for one in holes]
+    made = samples_of(shown, truth, known, size, draw)
     paper = [inpaint(masked, one, known, **options)[0] for one in holes]
     free = [inpaint(masked, one, np.zeros_like(known), **options)[0] for one in truth]
     flat = [[fill(one, known) for one in truth] for fill in (linear, spherical)]
-    return Filled(known, truth, np.stack(made, 1), *map(np.stack, (paper, free, *flat)))
+    return Filled(known, truth, made, *map(np.stack, (paper, free, *flat)))
+
+
+def samples_of(
+    shown: Inbetweener,
+    truth: Float[np.ndarray, "N T J 3"],
+    known: Bool[np.ndarray, "T J"],
+    size: InbetweenSize,
+    draw: torch.Generator,
+) -> Float[np.ndarray, "S N T J 3"]:
+    """What the network that is shown what is given makes of every motion."""
+    how = {"samples": size.samples, "steps": size.steps, "generator": draw}
+    holes = np.where(known[..., None], truth, np.nan)
+    return np.stack([inbetween(shown, one, known, **how) for one in holes], 1)
 
 
 def measures_of(one: Filled) -> list[Measure]:
@@ -201,18 +214,21 @@ def inbetween_records(
     seeds = {"data": UNSEEN, "motions": size.motions, "samples": size.samples, "weights": weights}
     seeds |= {"masked": paper_weights}
     seeds |= {"steps": size.steps, "masked_steps": size.masked_steps}
-    records, every = [], {}
+    records, every, fills = [], {}, {}
     for length in GAPS:
-        every[length] = {
-            measure.name: measure
-            for measure in measures_of(filled(ours, paper, truth, length, size))
-        }
+        fills[length] = filled(ours, paper, truth, length, size)
+        every[length] = {measure.name: measure for measure in measures_of(fills[length])}
         records += [
             f.as_record(f"inbetween.gap{length}.", seeds, command) for f in every[length].values()
         ]
-    more = filled(ours, paper, truth, 30, replace(size, steps=MORE_STEPS))
-    prefix = f"inbetween.steps{MORE_STEPS}.gap30."
-    records += [f.as_record(prefix, seeds, command) for f in measures_of(more)]
+    draw, finer = torch.Generator().manual_seed(COMPARED), replace(size, steps=MORE_STEPS)
+    made = samples_of(ours, truth, middle(COMPARED), finer, draw)
+    prefix = f"inbetween.steps{MORE_STEPS}.gap{COMPARED}."
+    records += [
+        one.as_record(prefix, seeds | {"steps": MORE_STEPS}, command)
+        for one in measures_of(replace(fills[COMPARED], made=made))
+        if one.name in OF_SAMPLES
+    ]
     barred = {
         f"gap{length}_error_over_interpolation": every[length]["error_over_interpolation"]
         for length in BARS

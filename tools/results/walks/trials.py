@@ -18,6 +18,7 @@ from motiondiff_edu.motion.skeleton import TOES, J
 from .scores import FPS
 
 UNSEEN = 900_000  # seeds from here on are in no training set
+MORE_STEPS = 50  # of DDIM, to compare with the usual ones
 SECONDS, T_H = 12, 10
 
 # (past (N, T_h, J, 3), control (N, T_h + n, 3), seed) -> new poses (N, n, J, 3), metres

@@ -18,8 +18,10 @@ from motiondiff_edu.pretrained.judges import Judge, judges
 
 from ..walks.parts import weights_digest
 from ..walks.scores import Measure, measure_of
+from ..walks.trials import MORE_STEPS
 from .edits import edit_measures, edit_trials
 from .looking import SEED, looked_at_measures
+from .looking import STEPS as LOOKED_AT_STEPS
 from .rows import Make, TrainingClips, noise, performed, shuffled, understood
 from .scores import (
     Panel,
@@ -35,7 +37,6 @@ from .scores import (
 from .trials import UNSEEN, Positions, Trials, unseen
 
 GUIDANCE = 2.5
-MORE_STEPS = 50  # of DDIM, to compare with the usual ones
 VARIETY = UNSEEN + 2  # the seed of the captions with several motions each
 HELD_OUT = {"heldout": {"split": "combinations"}, "wording": {"new_verbs": True}}
 
@@ -170,10 +171,13 @@ def guided_variety(studio: Studio) -> Found:
     return {"words.guided.": studio.varied(performed(studio.mover("mover"), GUIDANCE))}
 
 
+WITH_MORE_STEPS = f"words.steps{MORE_STEPS}."
+
+
 def more_steps(studio: Studio) -> Found:
     """The trials of Table 2 with more steps of DDIM."""
     make = performed(studio.mover("mover"), steps=MORE_STEPS)
-    return {f"words.steps{MORE_STEPS}.": studio.scored(make(studio.trials, 0))}
+    return {WITH_MORE_STEPS: studio.scored(make(studio.trials, 0))}
 
 
 def variety(studio: Studio) -> Found:
@@ -240,10 +244,12 @@ def word_records(
     size = studio.size
     seeds = {"data": UNSEEN, "edits": UNSEEN + 1, "variety": VARIETY, "looked_at": SEED}
     seeds |= {"trials": size.trials, "sampling": 0, "steps": STEPS}
+    seeds |= {"looked_at_steps": LOOKED_AT_STEPS}
+    more = {WITH_MORE_STEPS: {"steps": MORE_STEPS}}
     # here the trials are made, once: every process gets them with the studio
     seeds |= {"weights": weights_digest(studio.weights["mover"]), "judges": len(studio.judges)}
     return [
-        measure.as_record(prefix, seeds, command)
+        measure.as_record(prefix, seeds | more.get(prefix, {}), command)
         for found in run(PARTS, studio)
         for prefix, measures in found.items()
         for measure in measures
