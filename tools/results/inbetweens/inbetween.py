@@ -214,7 +214,8 @@ def inbetween_records(
     seeds = {"data": UNSEEN, "motions": size.motions, "samples": size.samples, "weights": weights}
     seeds |= {"masked": paper_weights}
     seeds |= {"steps": size.steps, "masked_steps": size.masked_steps}
-    records, every, fills = [], {}, {}
+    records: list[dict] = []
+    every, fills = {}, {}
     for length in GAPS:
         fills[length] = filled(ours, paper, truth, length, size)
         every[length] = {measure.name: measure for measure in measures_of(fills[length])}
