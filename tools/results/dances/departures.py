@@ -29,8 +29,7 @@ PLAN = Path(__file__).parents[3] / "docs" / "results" / "dancer-departures" / "p
 LINEAR_MUSIC = replace(MOFUSION_SMALL, music_layers=0)
 X0 = {"target": "x0", "skip": False}
 BASE = DanceRecipe(
-    "base", LINEAR_MUSIC, steps=2_000, optimizer="adam", changes=0.0, toes=0.0, gain_noise=0.0,
-    snr=1.0,
+    "base", LINEAR_MUSIC, steps=2_000, optimizer="adam", changes=0.0, toes=0.0,
 )  # fmt: skip
 
 
@@ -45,13 +44,9 @@ VARIANTS |= {"changes": added("errors of changes", "convolutions", changes=Dance
 VARIANTS |= {"toes": added("errors of toes", "changes", toes=DanceRecipe.toes)}
 VARIANTS |= {
     "ear": added("an ear", "toes", config=HEARING, ear=EAR),
-    "more-noise": added("a schedule with more noise", "toes", snr=0.1),
     "no-kinematics": added("no kinematic losses", "toes", kinematic=None),
 }
-VARIANTS |= {
-    "gain-noise": added("music as from different loudspeakers", "ear", gain_noise=0.3),
-    "guidable": added("music left out at times", "ear", no_music=0.15),
-}
+VARIANTS |= {"guidable": added("music left out at times", "ear", no_music=0.15)}
 
 
 @dataclass(frozen=True)
