@@ -9,7 +9,8 @@ first, in almost pure noise, guidance would make dances to one song alike; at th
 exaggerate what is fine, and feet would slide.
 A mover that plans guides the timeline first. Where the text of the motion is left out, its timeline
 stays, in training too, so for the motion a larger w stresses what the timeline does not say.
-Gain: docs/RESULTS_ALL.md, `dancer.guided.*` for music, `words.guided.*` for texts.
+Gain: docs/RESULTS.md, *From MoFusion to our dancer*, for music: the beat, and variety
+(`dancer-departures.guidable.*`); for texts, docs/RESULTS_ALL.md (`words.guided.*`).
 Source: Ho and Salimans, 2022; in an interval of noise alone: Kynkäänniemi and others, 2024. Ours;
 MoFusion has no guidance.
 Notebook: 12, 16

@@ -27,8 +27,8 @@ from ..motion.moving_frame import D
 from ..motion.root_frame import estimate_root
 from ..motion.skeleton import HIPS, TOES, J
 from ..performers.continuation import leg_size
-from ..performers.mover import ETA, STEPS, Mover
-from ..performers.performer import Watch
+from ..performers.mover import ETA, Mover
+from ..performers.performer import STEPS, Watch
 from ..performers.text_mofusion import Texts
 
 STRENGTH = 0.3  # share of the diffusion steps that the motion is noised by

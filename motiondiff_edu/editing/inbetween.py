@@ -11,7 +11,8 @@ from ..ddpm import Generators, timesteps
 from ..inbetweening import resampling_steps
 from ..motion.cleanup import clean_up
 from ..motion.root_frame import FPS
-from ..performers.inbetweener import STEPS, Inbetweener
+from ..performers.inbetweener import Inbetweener
+from ..performers.performer import STEPS
 
 
 def inbetween(

@@ -27,9 +27,7 @@ from ..mofusion import MoFusion, MoFusionConfig
 from ..motion.known import checked_given, given_features, with_given
 from ..motion.scaler import Scaler
 from .networks import register
-from .performer import Performer, Watch
-
-STEPS = 50  # default of DDIM
+from .performer import STEPS, Performer, Watch
 
 
 @dataclass(frozen=True)

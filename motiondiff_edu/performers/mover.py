@@ -33,11 +33,11 @@ from ..motion.scaler import Scaler
 from ..motion.skeleton import BONE_LENGTHS
 from .described_windows import GRID
 from .networks import MoverConfig, MoverNetwork
-from .performer import Performer, Watch, bar, evaluating, generators, sample_motion
+from .performer import STEPS, Performer, Watch, bar, evaluating, generators, sample_motion
 from .planned_mofusion import PlannedMoFusion
 from .text_mofusion import TextMoFusionConfig, Texts
 
-STEPS, ETA = 50, 0.5  # defaults of DDIM
+ETA = 0.5  # default of DDIM
 SECONDS = 6.0
 SHORTEST, LONGEST = 2.0, 10.0  # seconds, as in training
 

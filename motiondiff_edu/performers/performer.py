@@ -22,6 +22,10 @@ from .networks import AnyNetwork, Config
 Own = TypeVar("Own", bound="Performer")  # the class of a performer, or of one made of it
 Watch = Callable[[Iterable[Step]], Iterable[Step]]  # wraps a loop, as `bar` does
 
+# default of DDIM: more change little (docs/RESULTS_ALL.md: walker-ddpm, words.steps50,
+# inbetween.steps50)
+STEPS = 10
+
 
 def generators(seed: int, count: int, *also: int) -> list[torch.Generator]:
     """A generator for each of `count` samples. The first ones are those of a smaller count.

@@ -17,7 +17,7 @@ from .player import Figures, Look, Player
 
 SMALL = Look(height=300)
 SMOOTH = 30  # steps of the running mean
-SHARE = 3  # a picture is waited for three times as long as it took: at most a quarter of the time
+SHARE = 9  # a picture is waited for nine times as long as it took: at most a tenth of the time
 
 
 def watch_training(

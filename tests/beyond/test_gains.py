@@ -22,7 +22,6 @@ NOT_MEASURED = {
     "activity",
     "turning_frame",
     "self_attention",
-    "loss_terms",
 }
 
 

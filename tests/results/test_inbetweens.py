@@ -159,6 +159,8 @@ def test_every_way_is_asked_for_what_it_is_for(monkeypatch, truth):
     assert found.made.shape[:2] == (3, 4) and len(asked) == 12
     assert all(np.array_equal(one.holes.all(-1), ~middle(GAP)) for one in (*usual, *paper))
     assert all(set(one.options) == {"steps", "generator"} for one in asked)
+    assert {one.options["steps"] for one in usual} == {7}
+    assert {one.options["steps"] for one in (*paper, *free)} == {25}
     assert all(one.samples == 3 for one in usual)
     assert {one.network for one in usual} == {"shown"}
     assert {one.network for one in (*paper, *free)} == {"masked"}

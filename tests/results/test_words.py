@@ -247,12 +247,15 @@ def test_all_records_are_made(monkeypatch, mover):
     monkeypatch.setattr(scores, "REPLICATIONS", 2)
     monkeypatch.setattr(parts.Studio, "mover", lambda self, name: mover)
     monkeypatch.setattr(parts, "weights_digest", lambda path: "0")
-    monkeypatch.setattr(rows, "STEPS", 2)
-    monkeypatch.setattr(parts, "performed", lambda m, w=1.0: rows.performed(m, w, 2))
+    monkeypatch.setattr(parts, "performed", lambda m, w=1.0, steps=0: rows.performed(m, w, 2))
     records = {one["name"]: one for one in parts.word_records(studio, "python -m x")}
     wanted = {"words.heldout_action_accuracy", "words.wording_minimal_pair", "words.edit_changes"}
     wanted |= {"words.guided.mm_dist", "words.nearest.r_precision_top3", "words.data.fid"}
-    wanted |= {"words.multimodality_over_data", "words.nearest_training_over_data"}
+    wanted |= {
+        "words.steps50.fid",
+        "words.multimodality_over_data",
+        "words.nearest_training_over_data",
+    }
     assert wanted <= set(records)
 
 

@@ -81,7 +81,7 @@ def sweep(networks: dict[str, tuple[Inbetweener | Dancer, str]], size: Inbetween
 
     def measure(name: str, network: Inbetweener | Dancer, seed: int) -> Rows:
         draw = torch.Generator().manual_seed(GAP)
-        how = {"samples": size.samples, "steps": size.steps, "generator": draw}
+        how = {"samples": size.samples, "steps": size.masked_steps, "generator": draw}
         fill = VARIANTS[name].recipe[1]
         holes = np.where(known[..., None], truth, np.nan)
         made = np.stack([fill(network, one, known, **how) for one in holes], 1)
@@ -89,7 +89,10 @@ def sweep(networks: dict[str, tuple[Inbetweener | Dancer, str]], size: Inbetween
 
     def about(name: str) -> dict:
         found = {"data": UNSEEN, "motions": size.motions, "samples": size.samples, "gap": GAP}
-        return found | {"steps": size.steps, "weights": networks[VARIANTS[name].recipe[0]][1]}
+        return found | {
+            "steps": size.masked_steps,
+            "weights": networks[VARIANTS[name].recipe[0]][1],
+        }
 
     return Sweep(
         "inbetween-departures", VARIANTS, lambda name, seed: networks[VARIANTS[name].recipe[0]][0],

@@ -8,7 +8,7 @@ Source: MoFusion 4.4; what is measured, `metrics.keyframes`.  Notebook: 15
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
@@ -24,6 +24,7 @@ from motiondiff_edu.metrics.walks import skating
 from motiondiff_edu.motion.dance_frame import at_origin
 from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.performers.inbetweener import Inbetweener
+from motiondiff_edu.performers.performer import STEPS
 
 from ..walks.scores import Measure, measure_of, ratio
 from ..walks.trials import UNSEEN
@@ -31,6 +32,7 @@ from ..walks.trials import UNSEEN
 T = 100  # frames, as trained
 GAPS = (5, 15, 30, 60)
 BARS = (15, 30, 60)  # gaps that have a bar
+MORE_STEPS = 50  # of DDIM, to compare with the usual ones, in gaps of 30 frames
 
 
 @dataclass(frozen=True)
@@ -42,11 +44,12 @@ class InbetweenSize:
 
     motions: int = 12
     samples: int = 10
-    steps: int = 25
+    steps: int = STEPS
+    masked_steps: int = 25  # of masked sampling, for which ten are too few
 
 
 FULL = InbetweenSize()
-QUICK = InbetweenSize(motions=4, samples=3, steps=4)
+QUICK = InbetweenSize(motions=4, samples=3, steps=4, masked_steps=4)
 
 
 def trials(n: int) -> Float[np.ndarray, "N T J 3"]:
@@ -87,9 +90,10 @@ def filled(
     `shown`: the network that is shown what is given; `masked`: the one of masked sampling.
     """
     known, draw = middle(length), torch.Generator().manual_seed(length)
-    options = {"steps": size.steps, "generator": draw}
+    options = {"steps": size.masked_steps, "generator": draw}
     holes = np.where(known[..., None], truth, np.nan)
-    made = [inbetween(shown, one, known, samples=size.samples, **options) for one in holes]
+    how = {"samples": size.samples, "steps": size.steps, "generator": draw}
+    made = [inbetween(shown, one, known, **how) for one in holes]
     paper = [inpaint(masked, one, known, **options)[0] for one in holes]
     free = [inpaint(masked, one, np.zeros_like(known), **options)[0] for one in truth]
     flat = [[fill(one, known) for one in truth] for fill in (linear, spherical)]
@@ -196,7 +200,7 @@ def inbetween_records(
     (ours, weights), (paper, paper_weights) = shown, masked
     seeds = {"data": UNSEEN, "motions": size.motions, "samples": size.samples, "weights": weights}
     seeds |= {"masked": paper_weights}
-    seeds |= {"steps": size.steps}
+    seeds |= {"steps": size.steps, "masked_steps": size.masked_steps}
     records, every = [], {}
     for length in GAPS:
         every[length] = {
@@ -206,6 +210,9 @@ def inbetween_records(
         records += [
             f.as_record(f"inbetween.gap{length}.", seeds, command) for f in every[length].values()
         ]
+    more = filled(ours, paper, truth, 30, replace(size, steps=MORE_STEPS))
+    prefix = f"inbetween.steps{MORE_STEPS}.gap30."
+    records += [f.as_record(prefix, seeds, command) for f in measures_of(more)]
     barred = {
         f"gap{length}_error_over_interpolation": every[length]["error_over_interpolation"]
         for length in BARS

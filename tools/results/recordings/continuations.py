@@ -21,8 +21,8 @@ from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.motion.root_frame import FPS, control_from_path, to_root_frame
 from motiondiff_edu.motion.skeleton import J
 from motiondiff_edu.performers.continuation import Start, around_seam
-from motiondiff_edu.performers.performer import generators
-from motiondiff_edu.performers.walker import STEPS, Walker
+from motiondiff_edu.performers.performer import STEPS, generators
+from motiondiff_edu.performers.walker import Walker
 
 from ..walks.scores import Kind, measure_of, measures, root_mean, squared_bone_error
 from .windows import SECONDS, RecordedSize, amounts, person_of, recorded, trials

@@ -23,8 +23,8 @@ from motiondiff_edu.metrics.keyframes import energy_score, unknown_error
 from motiondiff_edu.metrics.walks import skating
 from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.motion.root_frame import FPS
-from motiondiff_edu.performers.inbetweener import STEPS, Inbetweener
-from motiondiff_edu.performers.performer import generators
+from motiondiff_edu.performers.inbetweener import Inbetweener
+from motiondiff_edu.performers.performer import STEPS, generators
 
 from ..sweep import GROUPS
 from ..walks.scores import SKATING_FLOOR, Kind, measures

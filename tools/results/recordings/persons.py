@@ -21,8 +21,8 @@ from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.motion.root_frame import FPS
 from motiondiff_edu.motion.skeleton import J
 from motiondiff_edu.performers.continuation import Start
-from motiondiff_edu.performers.performer import generators
-from motiondiff_edu.performers.walker import STEPS, Walker
+from motiondiff_edu.performers.performer import STEPS, generators
+from motiondiff_edu.performers.walker import Walker
 
 from ..walks.scores import Measure, measure_of, ratio
 from ..walks.trials import UNSEEN

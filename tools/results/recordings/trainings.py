@@ -9,7 +9,8 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
-from motiondiff_edu.performers.inbetweener import STEPS, Inbetweener
+from motiondiff_edu.performers.inbetweener import Inbetweener
+from motiondiff_edu.performers.performer import STEPS
 from motiondiff_edu.recipes.inbetweener import INBETWEENER, InbetweenerRecipe, train_inbetweener
 
 from ..sweep import Sweep, Variant, differences

@@ -23,7 +23,8 @@ from motiondiff_edu.diffusion_dropout import P_D
 from motiondiff_edu.metrics.distributions import spread
 from motiondiff_edu.metrics.walks import ROBUST, adherence, footsteps, heel_speed, skating
 from motiondiff_edu.modiff import MODIFF_SMALL
-from motiondiff_edu.performers.walker import STEPS, Walker
+from motiondiff_edu.performers.performer import STEPS
+from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.recipes.walker import WalkerRecipe, train, training_clips
 
 from ..repairs.trials import SHARE, continued

@@ -15,7 +15,7 @@ from safetensors import safe_open
 from motiondiff_edu._files import replacing
 from motiondiff_edu.metrics.walks import PAPER, ROBUST
 from motiondiff_edu.modiff import MoDiffConfig
-from motiondiff_edu.performers.walker import STEPS
+from motiondiff_edu.performers.performer import STEPS
 from motiondiff_edu.pretrained import checkpoints
 
 from . import steps_table

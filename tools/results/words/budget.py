@@ -27,10 +27,11 @@ from motiondiff_edu.recipes.mover import MOVER, MoverRecipe, train_mover
 
 from ..sweep import Sweep, Variant
 from ..walks.scores import Kind, ratio, root_mean, squared_bone_error
-from .rows import STEPS, performed
+from .rows import performed
 from .scores import RETRIEVED, Panel, by_trial, nearer, retrieved, sliding
 from .trials import UNSEEN, Positions, unseen
 
+STEPS = 25  # of DDIM
 SIZES = replace(MOVER.config, widths=(48, 48, 64), plan_widths=(24, 24, 32))
 SMALL = replace(MOVER, config=SIZES, steps=2400, plan_steps=0, frames=1024)
 ALONE = replace(SIZES.of_one(), D=moving_frame.D)
@@ -110,7 +111,7 @@ def sweep(budget: Budget, runs: Path, panel: Panel | None = None) -> Sweep:
     judged = cache(lambda: panel or Panel(judges(), unseen(budget.trials)))
 
     def measure(name: str, mover: Mover, seed: int) -> dict[str, np.ndarray]:
-        return rows_of(judged(), performed(mover)(judged().trials, seed))
+        return rows_of(judged(), performed(mover, steps=STEPS)(judged().trials, seed))
 
     def about(name: str) -> dict:
         found = {"data": UNSEEN, "trials": budget.trials, "steps": STEPS}

@@ -39,6 +39,7 @@ from .trials import UNSEEN, Positions, unseen
 LOOKED_AT = Path(__file__).with_name("looked_at.json")
 CLIPS = 200
 SEED = UNSEEN + 3
+STEPS = 25  # of DDIM: as they were looked at
 A_ROW, EVERY = 20, 2  # poses in a row of a sheet; frames from one to the next
 SIZE = (150, 230)  # of a pose, in points of the picture
 VERBS = tuple(verb for verb in timeline.VERBS if verb != "stand")
@@ -48,7 +49,7 @@ Seen = tuple[str, str, int]  # verb, side, count
 
 def motions(mover: Mover) -> list[Positions]:
     """The motions that are looked at."""
-    return performed(mover)(unseen(CLIPS, seed=SEED), 0)
+    return performed(mover, steps=STEPS)(unseen(CLIPS, seed=SEED), 0)
 
 
 def sheet(positions: Positions, title: str) -> Figure:

@@ -16,11 +16,11 @@ from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.motion import moving_frame
 from motiondiff_edu.motion.dance_frame import at_origin
 from motiondiff_edu.performers.mover import ETA, Mover
+from motiondiff_edu.performers.performer import STEPS
 from motiondiff_edu.recipes.mover import MOVER
 
 from .trials import Positions, Trials, other_captions
 
-STEPS = 25  # of DDIM
 EVERY = 4  # frames: distances to training motions compare five frames a second
 BATCH_FRAMES = 6000  # of one batch, all motions together
 
