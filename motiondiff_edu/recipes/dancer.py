@@ -19,7 +19,7 @@ from ..baselines.transformer import HearingTransformerConfig, regression_loss
 from ..beyond.classifier_free import without
 from ..beyond.loss_terms import changes, toe_changes, total
 from ..ddpm import Schedule, cosine_schedule, squared_error
-from ..kinematic_loss import training_loss, weight_by_step
+from ..kinematic_loss import KinematicWeights, training_loss, weight_by_step
 from ..metrics.bodies import bone_lengths
 from ..mofusion import MOFUSION_FULL, MOFUSION_SMALL
 from ..motion import dance_frame
@@ -29,7 +29,7 @@ from ..performers.hearing_mofusion import HearingConfig
 from ..performers.networks import Config, network
 from ..training import LossFn
 from .ear import EAR, EarRecipe, TrainedEar, ear_of
-from .mofusion import MoFusionRecipe
+from .mofusion import KINEMATIC, MoFusionRecipe
 from .songs import songs_as_mel
 from .training import Provenance, on_device, train_recipe
 
@@ -47,6 +47,8 @@ class DanceRecipe(MoFusionRecipe):
     """
 
     config: Config  # of a network for dancers (`performers.networks`)
+    # heavier ones made all but the bones worse (docs/RESULTS.md, *From MoFusion to our dancer*)
+    kinematic: KinematicWeights | None = replace(KINEMATIC, skeleton=30.0, asymmetry=0.4)
     no_music: float = 0.0  # share of the music left out: `beyond.classifier_free`
     frames: int = 100  # per window
     batch: int = 32

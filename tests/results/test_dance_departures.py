@@ -61,6 +61,7 @@ def test_each_variant_differs_from_its_rival_in_what_its_words_say(tiny):
         "toes": {"toes"},
         "ear": {"config", "ear"},
         "no-kinematics": {"kinematic"},
+        "light-kinematics": {"kinematic"},
         "guidable": {"no_music"},
     }
     assert set(differing) | {"base"} == set(VARIANTS)

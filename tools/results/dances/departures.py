@@ -16,10 +16,12 @@ from pathlib import Path
 import torch
 
 from motiondiff_edu.mofusion import MOFUSION_SMALL
-from motiondiff_edu.performers.dancer import ETA, STEPS, Dancer
+from motiondiff_edu.performers.dancer import ETA, Dancer
+from motiondiff_edu.performers.performer import STEPS
 from motiondiff_edu.pretrained.checkpoints import load
 from motiondiff_edu.recipes.dancer import HEARING, DanceRecipe, train_dancer, training_windows
 from motiondiff_edu.recipes.ear import EAR, ear_within
+from motiondiff_edu.recipes.mofusion import KINEMATIC
 
 from ..sweep import Sweep, Variant, differences, further, tuned_rate
 from .parts import DANCED, DanceSize, Stage, danced
@@ -29,7 +31,7 @@ PLAN = Path(__file__).parents[3] / "docs" / "results" / "dancer-departures" / "p
 LINEAR_MUSIC = replace(MOFUSION_SMALL, music_layers=0)
 X0 = {"target": "x0", "skip": False}
 BASE = DanceRecipe(
-    "base", LINEAR_MUSIC, steps=2_000, optimizer="adam", changes=0.0, toes=0.0,
+    "base", LINEAR_MUSIC, steps=2_000, optimizer="adam", kinematic=KINEMATIC, changes=0.0, toes=0.0,
 )  # fmt: skip
 
 
@@ -46,7 +48,10 @@ VARIANTS |= {
     "ear": added("an ear", "toes", config=HEARING, ear=EAR),
     "no-kinematics": added("no kinematic losses", "toes", kinematic=None),
 }
-VARIANTS |= {"guidable": added("music left out at times", "ear", no_music=0.15)}
+VARIANTS |= {
+    "light-kinematics": added("lighter kinematic losses", "ear", kinematic=DanceRecipe.kinematic),
+    "guidable": added("music left out at times", "ear", no_music=0.15),
+}
 
 
 @dataclass(frozen=True)
