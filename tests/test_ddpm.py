@@ -32,7 +32,7 @@ from motiondiff_edu.ddpm import (
 )
 from motiondiff_edu.exact import exact_denoiser, mixture, sample_mixture
 from motiondiff_edu.prediction import to_eps
-from motiondiff_edu.recipes.dancer import DANCER
+from motiondiff_edu.recipes.mover import MOVER
 
 S_REF = 1000
 
@@ -408,15 +408,15 @@ def test_the_table_in_the_docs_is_what_the_schedules_leave(call, left):
     assert f" {left} of the signal" in schedule_card(schedule)
 
 
-def test_the_dancers_row_of_the_table():
+def test_the_movers_row_of_the_table():
     text = (Path(__file__).parents[1] / "docs" / "NOTATION.md").read_text(encoding="utf-8")
     ((snr, left),) = re.findall(
         r"^\| `shifted\(cosine_schedule\(1000\), (.*?)\)`.*?\| 1000 \| (.*?) \|$",
         text,
         re.MULTILINE,
     )
-    assert float(snr) == DANCER.snr and f" {left} of" in schedule_card(
-        shifted(cosine_schedule(1000), DANCER.snr)
+    assert float(snr) == MOVER.snr and f" {left} of" in schedule_card(
+        shifted(cosine_schedule(1000), MOVER.snr)
     )
 
 

@@ -3,7 +3,7 @@
 A dancer learns to hear through its dances alone, and there the beat is a small part of the error.
 So an ear is taught first, from songs without dances: where in the beat and in the bar each moment
 is, whether there is a beat at all, and the genre. For that a song can be heard faster, higher,
-in noise, or without some of its bands, which a dance could not follow.
+in noise, without some of its bands, or from other loudspeakers, which a dance could not follow.
 
     place in the beat      0 on a beat, 1/2 between two; a network gives it as cosine and sine
     count                  beats since the first one, with the place behind the point
@@ -117,6 +117,19 @@ def augmented(
     bands = torch.arange(C)
     hidden = (first <= bands) & (bands < first + width)
     return mel.where(~hidden[:, None], SILENT)
+
+
+def gain_noise(
+    mel: Float[Tensor, "B M C"], amount: float, generator: torch.Generator
+) -> Float[Tensor, "B M C"]:
+    """Standardised Mel frames as from other loudspeakers, so that an ear does not depend on how a
+    song was mastered.
+
+    They get a level and a tilt over the bands, both of standard deviation `amount`, the same at all
+    times of a piece.
+    """
+    level, tilt = amount * torch.randn(2, len(mel), 1, 1, generator=generator)
+    return mel + level + tilt * torch.linspace(-1, 1, mel.shape[-1])
 
 
 def interpolated_rows(

@@ -4,9 +4,9 @@ More noise: if many entries carry the same information, it survives noise that h
 entry (images with more pixels, dances with more frames). A schedule for small samples then spends
 too few steps at the noise levels that decide the large structure.
 Gain: docs/RESULTS.md. No steps at low noise: *From the paper's walker to ours*
-(`walker-departures.leap.*`). More noise: *From MoFusion to our dancer*
-(`dancer-departures.more-noise.*`); bones are better, and feet slide more, dances differ less.
-Source: Hoogeboom and others, 2023 (simple diffusion), for images; for dances, ours.  Notebook: 12
+(`walker-departures.leap.*`). More noise: not measured for the mover and the in-betweener, which
+have it; dances gained nothing, and do without.
+Source: Hoogeboom and others, 2023 (simple diffusion), for images; for motion, ours.
 """
 
 from collections.abc import Callable

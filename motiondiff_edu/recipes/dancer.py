@@ -12,17 +12,14 @@ from typing import Any
 
 import numpy as np
 import torch
-from jaxtyping import Bool, Float
 from torch import Tensor
 
 from .._files import digest_of_tensors
 from ..baselines.transformer import HearingTransformerConfig, regression_loss
 from ..beyond.classifier_free import without
-from ..beyond.gain_noise import gain_noise
 from ..beyond.loss_terms import changes, toe_changes, total
-from ..beyond.schedules import shifted
 from ..ddpm import Schedule, cosine_schedule, squared_error
-from ..kinematic_loss import training_loss, weight_by_step
+from ..kinematic_loss import KinematicWeights, training_loss, weight_by_step
 from ..metrics.bodies import bone_lengths
 from ..mofusion import MOFUSION_FULL, MOFUSION_SMALL
 from ..motion import dance_frame
@@ -32,7 +29,7 @@ from ..performers.hearing_mofusion import HearingConfig
 from ..performers.networks import Config, network
 from ..training import LossFn
 from .ear import EAR, EarRecipe, TrainedEar, ear_of
-from .mofusion import MoFusionRecipe
+from .mofusion import KINEMATIC, MoFusionRecipe
 from .songs import songs_as_mel
 from .training import Provenance, on_device, train_recipe
 
@@ -50,9 +47,9 @@ class DanceRecipe(MoFusionRecipe):
     """
 
     config: Config  # of a network for dancers (`performers.networks`)
-    gain_noise: float = 0.3  # `beyond.gain_noise`
+    # heavier ones made all but the bones worse (docs/RESULTS.md, *From MoFusion to our dancer*)
+    kinematic: KinematicWeights | None = replace(KINEMATIC, skeleton=30.0, asymmetry=0.4)
     no_music: float = 0.0  # share of the music left out: `beyond.classifier_free`
-    snr: float = 0.1  # factor on the signal-to-noise ratio of the cosine schedule
     frames: int = 100  # per window
     batch: int = 32
     songs: int = 1500
@@ -90,7 +87,6 @@ UNCONDITIONAL = DanceRecipe(
     "unconditional",
     replace(MOFUSION_SMALL, target="x0", skip=False, C=0),
     steps=6000,
-    gain_noise=0.0,
     songs=3000,
 )
 
@@ -159,7 +155,7 @@ def train_dancer(
     made_of = "music.varied and data_synth.dancing" if recipe.config.C else "mixed"
     source = f"data_synth.{made_of}, synthetic" if windows is None else "given windows"
     windows = training_windows(recipe) if windows is None else windows
-    schedule = schedule_of(recipe)
+    schedule = cosine_schedule(recipe.config.S)
     torch.manual_seed(recipe.seed)
     model = network(recipe.config)
     about = {"network": type(model).__name__, "data": digest(windows)}
@@ -191,15 +187,10 @@ def bones_of(windows: DanceWindows) -> dict[str, list[float]]:
     return {"bones_cm": typical.round(3).tolist()} if same else {}
 
 
-def schedule_of(recipe: DanceRecipe) -> Schedule:
-    """The cosine schedule, shifted by the recipe's `snr`."""
-    return shifted(cosine_schedule(recipe.config.S), recipe.snr)
-
-
 def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> LossFn:
-    """Eq. 4 of dances and their music, which sounds as from different loudspeakers.
+    """Eq. 4 of dances and their music, which is left out now and then.
 
-    Now and then the music is left out. A regression has a loss of its own.
+    A regression has a loss of its own.
     Source: MoFusion eq. 4; the other terms are ours.
     """
     if getattr(recipe.config, "deterministic", False):
@@ -213,7 +204,7 @@ def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> L
 
     def loss_fn(model: Any, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
-        x0, mel, planted = (part.to(device) for part in drawn(recipe, windows, generator))
+        x0, mel, planted = (part.to(device) for part in windows.draw(recipe.batch, generator))
         music = model.listen(mel, windows.mel_times.to(device)) if model.config.C else None
         if music is not None and recipe.no_music:
             left_out = torch.rand(len(mel), generator=generator) < recipe.no_music
@@ -234,19 +225,11 @@ def regression_loss_of(recipe: DanceRecipe, windows: DanceWindows) -> LossFn:
 
     def loss_fn(model: Any, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
-        x0, mel, _ = drawn(recipe, windows, generator)
+        x0, mel, _ = windows.draw(recipe.batch, generator)
         times = windows.mel_times.to(device)
         return regression_loss(model, x0.to(device), mel.to(device), times)
 
     return loss_fn
-
-
-def drawn(
-    recipe: DanceRecipe, windows: DanceWindows, generator: torch.Generator
-) -> tuple[Float[Tensor, "B T D"], Float[Tensor, "B M C"], Bool[Tensor, "B T 2"]]:
-    """A random batch: motion, music with the recipe's gain noise, and which feet are planted."""
-    motion, mel, planted = windows.draw(recipe.batch, generator)
-    return motion, gain_noise(mel, recipe.gain_noise, generator), planted
 
 
 def digest(windows: DanceWindows) -> str:

@@ -14,10 +14,10 @@ from torch import Tensor
 from torch.nn import functional as F
 
 from .._files import digest_of_tensors, digest_of_texts
-from ..beyond.gain_noise import gain_noise
 from ..beyond.hearing import (
     MelAugmentation,
     augmented,
+    gain_noise,
     interpolated_rows,
     on_circles,
     tempo_factors,
@@ -39,7 +39,7 @@ class EarRecipe(Recipe):
     config: EarConfig = EarConfig()
     steps: int = 10_000
     frames: tuple[int, ...] = (128, 160, 224)  # Mel frames of a piece; one of these for each batch
-    gain_noise: float = 0.3  # `beyond.gain_noise`
+    gain_noise: float = 0.3  # `beyond.hearing.gain_noise`
     lr: float = 2e-3
     batch: int = 32
     songs: int = 1500

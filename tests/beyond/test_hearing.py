@@ -13,6 +13,7 @@ from motiondiff_edu.beyond.hearing import (
     MelAugmentation,
     augmented,
     beat_counts,
+    gain_noise,
     interpolated_rows,
     on_circles,
     tempo_factors,
@@ -86,3 +87,18 @@ def test_a_song_is_heard_higher_in_noise_and_without_bands():
     for row in hidden[hidden.any(1)]:
         (at,) = row.nonzero(as_tuple=True)
         assert at.max() - at.min() + 1 == len(at)  # next to each other
+
+
+def test_music_with_gain_noise_differs_in_level_and_balance_alone():
+    generator = torch.Generator().manual_seed(0)
+    mel = torch.randn(400, 20, 5, generator=generator)
+    change = gain_noise(mel, 0.3, generator) - mel
+    alike = change[:, :1].expand_as(change)
+    torch.testing.assert_close(change, alike, atol=1e-5, rtol=0)
+    level = change[:, 0].mean(-1)
+    tilt = (change[:, 0, -1] - change[:, 0, 0]) / 2
+    line = level[:, None] + tilt[:, None] * torch.linspace(-1, 1, 5)
+    torch.testing.assert_close(change[:, 0], line, atol=1e-5, rtol=0)
+    assert level.std().item() == pytest.approx(0.3, rel=0.15)
+    assert tilt.std().item() == pytest.approx(0.3, rel=0.15)
+    assert abs(torch.corrcoef(torch.stack([level, tilt]))[0, 1]) < 0.2  # neither follows the other

@@ -39,7 +39,7 @@ def answers(monkeypatch):
 def of_dancer(name: str) -> tuple[nn.Module, LossFn]:
     recipe = DANCES[name]
     windows = dancer.training_windows(recipe)
-    loss_fn = dancer.loss_of(recipe, windows, dancer.schedule_of(recipe))
+    loss_fn = dancer.loss_of(recipe, windows, cosine_schedule(recipe.config.S))
     return network(recipe.config), loss_fn
 
 

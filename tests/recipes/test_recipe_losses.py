@@ -8,7 +8,7 @@ import pytest
 import torch
 
 from motiondiff_edu.beyond.past_noise import past_noise
-from motiondiff_edu.ddpm import linear_schedule
+from motiondiff_edu.ddpm import cosine_schedule, linear_schedule
 from motiondiff_edu.diffusion_dropout import Dropout
 from motiondiff_edu.kinematic_loss import OVER_TIME
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
@@ -54,7 +54,7 @@ WITHOUT_EAR = {"config": replace(X0, **SMALL), "ear": None, "no_music": 0.0}
 PLAIN = replace(
     DANCER,
     **WITHOUT_EAR | {"config": replace(X0, **SMALL | {"target": "eps", "skip": True})},
-    kinematic=None, changes=0.0, toes=0.0, gain_noise=0.0, snr=1.0, batch=5,
+    kinematic=None, changes=0.0, toes=0.0, batch=5,
 )  # fmt: skip
 DANCED_WITH = {
     "dancer": (
@@ -78,7 +78,7 @@ DANCED_WITH = {
 @pytest.mark.parametrize("name", DANCED_WITH)
 def test_dancers_losses_are_those_that_the_shipped_ones_were_trained_with(name):
     recipe, losses, after = DANCED_WITH[name]
-    schedule = dancer.schedule_of(recipe)
+    schedule = cosine_schedule(recipe.config.S)
     torch.manual_seed(0)
     model = MoFusion(recipe.config)
     torch.nn.init.normal_(model.out.weight, std=0.1)
@@ -130,13 +130,12 @@ def test_a_walkers_loss_is_algorithm_1(walks, rate, held, noise):
 
 def test_without_departures_a_dancer_s_loss_is_the_mean_square_of_eps():
     recipe, windows = PLAIN, dances()
-    schedule = dancer.schedule_of(recipe)
+    schedule = cosine_schedule(recipe.config.S)
     generator = seeded()
     torch.manual_seed(0)
     model = MoFusion(recipe.config)
     loss = dancer.loss_of(recipe, windows, schedule)(model, seeded())
     x0, mel, _ = windows.draw(5, generator)
-    torch.randn(10, generator=generator)  # the gain noise, times 0
     s = torch.randint(1, 51, (5,), generator=generator)
     eps = torch.randn(x0.shape, generator=generator)
     alpha_bar = schedule.alpha_bar[s].float()[:, None, None]
@@ -152,12 +151,12 @@ def test_kinematic_losses_have_the_recipes_weight_over_time():
         recipe = replace(recipe, kinematic=replace(recipe.kinematic, over_time=name))
         torch.manual_seed(0)
         model = MoFusion(recipe.config)
-        loss_fn = dancer.loss_of(recipe, windows, dancer.schedule_of(recipe))
+        loss_fn = dancer.loss_of(recipe, windows, cosine_schedule(recipe.config.S))
         found[name] = loss_fn(model, seeded()).item()
     assert found["none"] < found["alpha_bar"] < found["constant"] and len(set(found.values())) == 4
     wrong = replace(recipe, kinematic=replace(recipe.kinematic, over_time="always"))
     with pytest.raises(ValueError, match="over_time must be one of none, constant"):
-        dancer.loss_of(wrong, windows, dancer.schedule_of(wrong))
+        dancer.loss_of(wrong, windows, cosine_schedule(wrong.config.S))
 
 
 def test_a_plain_loss_needs_no_toe_that_moves():
@@ -165,7 +164,7 @@ def test_a_plain_loss_needs_no_toe_that_moves():
     mels = [torch.zeros(120, 5)] * 2
     windows = DanceWindows.of(still, [np.ones((60, 2), bool)] * 2, mels, 40)
     torch.manual_seed(0)
-    loss_fn = dancer.loss_of(PLAIN, windows, dancer.schedule_of(PLAIN))
+    loss_fn = dancer.loss_of(PLAIN, windows, cosine_schedule(PLAIN.config.S))
     assert loss_fn(MoFusion(PLAIN.config), seeded()).isfinite()
 
 

@@ -16,10 +16,12 @@ from pathlib import Path
 import torch
 
 from motiondiff_edu.mofusion import MOFUSION_SMALL
-from motiondiff_edu.performers.dancer import ETA, STEPS, Dancer
+from motiondiff_edu.performers.dancer import ETA, Dancer
+from motiondiff_edu.performers.performer import STEPS
 from motiondiff_edu.pretrained.checkpoints import load
 from motiondiff_edu.recipes.dancer import HEARING, DanceRecipe, train_dancer, training_windows
 from motiondiff_edu.recipes.ear import EAR, ear_within
+from motiondiff_edu.recipes.mofusion import KINEMATIC
 
 from ..sweep import Sweep, Variant, differences, further, tuned_rate
 from .parts import DANCED, DanceSize, Stage, danced
@@ -29,8 +31,7 @@ PLAN = Path(__file__).parents[3] / "docs" / "results" / "dancer-departures" / "p
 LINEAR_MUSIC = replace(MOFUSION_SMALL, music_layers=0)
 X0 = {"target": "x0", "skip": False}
 BASE = DanceRecipe(
-    "base", LINEAR_MUSIC, steps=2_000, optimizer="adam", changes=0.0, toes=0.0, gain_noise=0.0,
-    snr=1.0,
+    "base", LINEAR_MUSIC, steps=2_000, optimizer="adam", kinematic=KINEMATIC, changes=0.0, toes=0.0,
 )  # fmt: skip
 
 
@@ -45,11 +46,10 @@ VARIANTS |= {"changes": added("errors of changes", "convolutions", changes=Dance
 VARIANTS |= {"toes": added("errors of toes", "changes", toes=DanceRecipe.toes)}
 VARIANTS |= {
     "ear": added("an ear", "toes", config=HEARING, ear=EAR),
-    "more-noise": added("a schedule with more noise", "toes", snr=0.1),
     "no-kinematics": added("no kinematic losses", "toes", kinematic=None),
 }
 VARIANTS |= {
-    "gain-noise": added("music as from different loudspeakers", "ear", gain_noise=0.3),
+    "light-kinematics": added("lighter kinematic losses", "ear", kinematic=DanceRecipe.kinematic),
     "guidable": added("music left out at times", "ear", no_music=0.15),
 }
 

@@ -12,11 +12,13 @@ import torch
 
 from benchmarks.records import record
 from motiondiff_edu.baselines.transformer import TransformerConfig
+from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.mofusion import MOFUSION_SMALL
 from motiondiff_edu.performers.dance_windows import DanceWindows
-from motiondiff_edu.performers.dancer import STEPS, Dancer
+from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.performers.networks import Config, network
-from motiondiff_edu.recipes.dancer import DanceRecipe, loss_of, schedule_of, training_windows
+from motiondiff_edu.performers.performer import STEPS
+from motiondiff_edu.recipes.dancer import DanceRecipe, loss_of, training_windows
 from motiondiff_edu.recipes.muon import optimizer_for
 from motiondiff_edu.training import TrainState, train_steps
 
@@ -36,7 +38,7 @@ class Clock:
     """
 
     def __init__(self, recipe: DanceRecipe, windows: DanceWindows):
-        schedule = schedule_of(recipe)
+        schedule = cosine_schedule(recipe.config.S)
         torch.manual_seed(recipe.seed)
         model = network(recipe.config)
         state = TrainState.start(model, recipe.seed, optimizer_for(model, recipe.optimizer))
@@ -74,7 +76,7 @@ def recipe_of(name: str) -> DanceRecipe:
     """A training of a network; how many songs there are does not change the time of a step."""
     return DanceRecipe(
         f"dance-time.{name}", NETWORKS[name], steps=1, songs=2, seconds=8.0, batch=BATCH,
-        kinematic=None, changes=0.0, toes=0.0, gain_noise=0.0,
+        kinematic=None, changes=0.0, toes=0.0,
     )  # fmt: skip
 
 
