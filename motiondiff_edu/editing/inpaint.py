@@ -22,8 +22,7 @@ from ..inbetweening import inpaint_steps
 from ..motion.dance_frame import PATH
 from ..motion.known import checked_given, given_features, with_given
 from ..motion.skeleton import J
-from ..performers.dancer import Dancer
-from ..performers.performer import STEPS
+from ..performers.dancer import STEPS, Dancer
 
 # of `guided`; a larger value follows sparse keyframes better, but the motion jumps more at the ends
 # of a gap

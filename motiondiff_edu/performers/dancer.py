@@ -33,9 +33,10 @@ from ..motion.retarget import SHORTEST
 from ..motion.scaler import Scaler
 from .dance_windows import FPS, mel_frames
 from .networks import DancerNetwork, register
-from .performer import STEPS, Performer, Watch, bar, evaluating, generators, sample_motion
+from .performer import Performer, Watch, bar, evaluating, generators, sample_motion
 
-ETA = 1.0  # default of DDIM; with less fresh noise, dances to a song differ less
+# defaults of DDIM; with ten steps, dances to a song differ less, and with less fresh noise, too
+STEPS, ETA = 25, 1.0
 # chosen on other songs than those of docs/RESULTS.md
 USUAL_GUIDANCE = 4.0
 GUIDED = 0.0025, 0.27  # alpha_bar: with more or less, dances follow the music without guidance

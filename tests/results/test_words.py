@@ -241,7 +241,7 @@ def test_an_edit_that_gives_the_motion_back_keeps_everything_and_changes_nothing
 
 
 def test_all_records_are_made(monkeypatch, mover):
-    size = replace(parts.WORD_QUICK, trials=40, held_out=40, texts=2, each=2, edits=2, training=30)
+    size = replace(parts.WORD_QUICK, trials=40, held_out=40, texts=2, each=2, edits=2, training=8)
     studio = parts.Studio(size, {"mover": __file__})
     monkeypatch.setattr(parts, "judges", lambda: judges()[:1])
     monkeypatch.setattr(scores, "REPLICATIONS", 2)

@@ -20,8 +20,7 @@ from motiondiff_edu.course.analyses.attention_on_beats import (
     beat_mass_by_chance,
     seconds_read,
 )
-from motiondiff_edu.performers.dancer import Dancer
-from motiondiff_edu.performers.performer import STEPS
+from motiondiff_edu.performers.dancer import STEPS, Dancer
 from motiondiff_edu.viz.sound import levels_over_sound
 
 from ..walks.parts import weights_digest

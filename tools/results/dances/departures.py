@@ -16,8 +16,7 @@ from pathlib import Path
 import torch
 
 from motiondiff_edu.mofusion import MOFUSION_SMALL
-from motiondiff_edu.performers.dancer import ETA, Dancer
-from motiondiff_edu.performers.performer import STEPS
+from motiondiff_edu.performers.dancer import ETA, STEPS, Dancer
 from motiondiff_edu.pretrained.checkpoints import load
 from motiondiff_edu.recipes.dancer import HEARING, DanceRecipe, train_dancer, training_windows
 from motiondiff_edu.recipes.ear import EAR, ear_within

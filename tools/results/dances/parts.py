@@ -18,8 +18,7 @@ from data_synth.music.recorded import recorded_song
 from data_synth.music.tempi import HELD_OUT_TEMPI, held_out
 from data_synth.music.varied import varied_songs
 from motiondiff_edu.motion.cleanup import Body, clean_up
-from motiondiff_edu.performers.dancer import Dancer
-from motiondiff_edu.performers.performer import STEPS
+from motiondiff_edu.performers.dancer import STEPS, Dancer
 from motiondiff_edu.pretrained import checkpoints
 
 from ..walks.parts import weights_digest

@@ -24,8 +24,7 @@ from motiondiff_edu.metrics.dances import (
     kinematic_beats,
     shifted_level,
 )
-from motiondiff_edu.performers.dancer import Dancer
-from motiondiff_edu.performers.performer import STEPS
+from motiondiff_edu.performers.dancer import STEPS, Dancer
 from motiondiff_edu.recipes.recordings import VARIABLE
 
 from ..walks.scores import FPS, Measure, measure_of

@@ -15,9 +15,8 @@ from motiondiff_edu.baselines.transformer import TransformerConfig
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.mofusion import MOFUSION_SMALL
 from motiondiff_edu.performers.dance_windows import DanceWindows
-from motiondiff_edu.performers.dancer import Dancer
+from motiondiff_edu.performers.dancer import STEPS, Dancer
 from motiondiff_edu.performers.networks import Config, network
-from motiondiff_edu.performers.performer import STEPS
 from motiondiff_edu.recipes.dancer import DanceRecipe, loss_of, training_windows
 from motiondiff_edu.recipes.muon import optimizer_for
 from motiondiff_edu.training import TrainState, train_steps
