@@ -124,7 +124,7 @@ def editor_panel(browser, folder: Path) -> Iterator[Image.Image]:
     """The editor: three frames are pinned, a hand is moved, in-betweens are made and played."""
     network = md.load("inbetweener")
     motion = walk(constant_control(1.0, seconds=4), seed=5).world()
-    editor = Editor(motion, partial(inbetween, network, steps=25))
+    editor = Editor(motion, partial(inbetween, network))
     with open_page(browser, viewport={"width": WIDTHS[2], "height": 900}) as page:
         open_editor(page, folder, editor)
         page.add_style_tag(

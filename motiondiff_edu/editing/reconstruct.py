@@ -25,10 +25,11 @@ from ..motion.motion import MotionError, MotionWarning
 from ..motion.root_frame import FPS, smoothed_root, to_root_frame, to_world
 from ..motion.skeleton import HIPS, JOINTS, J
 from ..performers.continuation import farthest, unlike_training
+from ..performers.performer import STEPS
 from ..reconstruction import Rollout, Stop
 from ..rollout import SLACK, AnyWalker, Units
 
-ROUNDS, STEPS = 3, 10  # rounds there and back; steps of DDIM
+ROUNDS = 3  # there and back
 BATCH = 64  # windows at once
 
 

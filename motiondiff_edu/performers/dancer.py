@@ -35,7 +35,8 @@ from .dance_windows import FPS, mel_frames
 from .networks import DancerNetwork, register
 from .performer import Performer, Watch, bar, evaluating, generators, sample_motion
 
-# defaults of DDIM; with ten steps, dances to a song differ less, and with less fresh noise, too
+# defaults of DDIM; with ten steps, dances to a song differ less (docs/RESULTS_ALL.md:
+# dancer.steps10, dancer.steps50), and with less fresh noise, too
 STEPS, ETA = 25, 1.0
 # chosen on other songs than those of docs/RESULTS.md
 USUAL_GUIDANCE = 4.0

@@ -21,9 +21,9 @@ from ..motion.known import checked_known
 from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HIPS, TOES
-from ..performers.inbetweener import STEPS, Inbetweener
+from ..performers.inbetweener import Inbetweener
 from ..performers.mover import LONGEST, SHORTEST, Mover
-from ..performers.performer import bar, generators
+from ..performers.performer import STEPS, bar, generators
 from ..performers.walker import Walker
 from . import checkpoints
 from .checkpoints import P

@@ -47,7 +47,7 @@ class DanceRecipe(MoFusionRecipe):
     """
 
     config: Config  # of a network for dancers (`performers.networks`)
-    # heavier ones make dances worse, bones too (docs/RESULTS.md, *From MoFusion to our dancer*)
+    # after 2,000 steps heavier ones made dances worse, bones too (docs/RESULTS.md)
     kinematic: KinematicWeights | None = replace(KINEMATIC, skeleton=30.0, asymmetry=0.4)
     no_music: float = 0.0  # share of the music left out: `beyond.classifier_free`
     frames: int = 100  # per window

@@ -22,7 +22,7 @@ class Perfect:
         self.known: list[songs.Songs] = []
         self.frames: list[int] = []
 
-    def dance_mel(self, mel, frames, *, generator=None, guidance=None):
+    def dance_mel(self, mel, frames, *, generator=None, guidance=None, steps=None):
         self.frames.append(frames)
         made, asked = [], {}
         for one in mel:
@@ -98,7 +98,7 @@ def test_a_perfect_dancer_to_music_unheard(stage):
     assert all(any(low <= tempo <= high for tempo in heard) for low, high in ((66, 74), (146, 154)))
 
 
-def test_a_perfect_dancer_at_every_weight(stage):
-    found = values(parts.guided_records(stage, "c"))
-    for weight in parts.WEIGHTS:
-        assert found[f"dancer.guided.{weight}.bas_share"] == pytest.approx(1, abs=1e-3)
+def test_a_perfect_dancer_in_every_way(stage):
+    found = values(parts.way_records(stage, "c"))
+    for way in parts.WAYS:
+        assert found[f"dancer.{way}.bas_share"] == pytest.approx(1, abs=1e-3)

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import torch
 from gaits import rest_pose
 from small_dancers import dancer_to_mel
 
@@ -12,7 +11,7 @@ from data_synth.music.tempi import HELD_OUT_TEMPI, held_out
 from data_synth.music.varied import varied_songs
 from tools.results.dances import parts
 from tools.results.dances.floor import data_floor_measures, floor_measures, floor_rows, over_genres
-from tools.results.dances.parts import WEIGHTS, DanceSize, Guided, Stage, guided_records
+from tools.results.dances.parts import WAYS, DanceSize, Stage, way_records
 from tools.results.dances.scores import share, worst_share
 from tools.results.dances.songs import FEWEST, JUDGED, UNSEEN, judged_songs, songs_like_real
 
@@ -95,30 +94,30 @@ def test_the_worse_of_two_ranges_by_hand():
 
 
 class Heard:
-    """A dancer whose dances depend on the weight of guidance alone, and who keeps the weights."""
+    """A dancer whose dances depend on guidance and steps alone, and who keeps what it was asked."""
 
     def __init__(self):
         self.dancer, self.asked = dancer_to_mel(), []
 
-    def dance_mel(self, mel, frames, *, generator=None, guidance=None):
-        self.asked.append(guidance)
+    def dance_mel(self, mel, frames, *, generator=None, guidance=4, steps=25):
+        self.asked.append((guidance, steps))
         made = self.dancer.dance_mel(mel, frames, generator=generator, steps=2)
-        return made * guidance
+        return made * guidance * steps
 
 
-def test_each_weight_of_guidance_is_asked_for_and_measured(monkeypatch):
+def test_each_way_is_asked_for_and_measured(monkeypatch):
     stage = Stage(DanceSize(songs=2, seeds=1, pieces=1, each=2))
     heard = Heard()
     stage.dancer = lambda name: heard
     monkeypatch.setattr(parts, "weights_digest", lambda path: "w")
     stage.weights = {"dancer": None}
-    found = {one["name"]: one["value"] for one in guided_records(stage, "c")}
-    assert set(heard.asked) == set(WEIGHTS) and {1, 2} < set(WEIGHTS)
-    speeds = [found[f"dancer.guided.{weight}.speed_mps"] for weight in (1, 2)]
-    assert speeds[1] == pytest.approx(2 * speeds[0], rel=1e-3)
+    found = {one["name"]: one for one in way_records(stage, "c")}
+    assert set(heard.asked) == {(1, 25), (2, 25), (4, 25), (4, 10), (4, 50)}
+    speeds = {way: found[f"dancer.{way}.speed_mps"]["value"] for way in WAYS}
+    assert speeds["guided.2"] == pytest.approx(2 * speeds["guided.1"], rel=1e-3)
+    assert speeds["steps50"] == pytest.approx(5 * speeds["steps10"], rel=1e-3)
     for kind in ("bas_share", "multimodality_over_data", "fid", "speed_over_data"):
-        assert all(f"dancer.guided.{weight}.{kind}" in found for weight in WEIGHTS)
-    noise = torch.Generator().manual_seed(0)
-    mel = stage.songs.mel[:1]
-    same = Guided(heard, 3).dance_mel(mel, 20, generator=noise)
-    assert same.shape == (1, 20, 21, 3) and heard.asked[-1] == 3
+        assert all(f"dancer.{way}.{kind}" in found for way in WAYS)
+    said = {way: found[f"dancer.{way}.fid"]["seeds"] for way in WAYS}
+    assert said["guided.2"]["guidance"] == 2 and "guidance" not in said["steps10"]
+    assert [said[way]["steps"] for way in ("guided.1", "steps10", "steps50")] == [25, 10, 50]

@@ -27,15 +27,15 @@ def right(song, faster: float = 1.0) -> Heard:
 def test_beats_are_counted_as_they_are_heard(monkeypatch, faster, beats):
     told = iter([right(song, faster) for song in SONGS])
     monkeypatch.setattr(hearing, "heard_by", lambda dancer, mel: next(told))
-    found = hearing_of(None, SONGS, track=lambda audio: np.array([]))
+    found = hearing_of(None, SONGS)
     measures = {one.name: one.value for one in hearing_measures(found)}
     low, high = beats
     assert low <= measures["beats_f"] <= high
-    assert measures["tracker_f"] == 0 and measures["genre_accuracy"] == 1
+    assert measures["tracker_f"] > 0.5 and measures["genre_accuracy"] == 1
     assert measures["downbeats_f"] > 0.85
 
 
 def test_a_genre_that_is_not_heard_counts_nothing(monkeypatch):
     wrong = replace(right(SONGS[0]), genres={"pop": 0.2, "latin": 0.8})
     monkeypatch.setattr(hearing, "heard_by", lambda dancer, mel: wrong)
-    assert hearing_of(None, SONGS[:1], track=lambda audio: SONGS[0].beats).genre.tolist() == [0]
+    assert hearing_of(None, SONGS[:1]).genre.tolist() == [0]

@@ -19,7 +19,7 @@ CALLED = {  # part: where its function is, and its name
     "mend-both": (command.both, "both_records"),
     "inbetween": (command.inbetween, "inbetween_records"),
     "words": (command.words, "word_records"),
-    "guided": (command.dances, "guided_records"),
+    "dance-ways": (command.dances, "way_records"),
     "ear": (command, "hearing_records"),
     "recordings": (command.continuations, "recorded_records"),
     "recordings-reconstructions": (command.reconstructions, "reconstruction_records"),

@@ -92,12 +92,12 @@ def test_eyes_and_rules_are_compared_by_hand():
     found = by_name(looking.kappas([[*one, left] for one in eyes], [[*one, left] for one in rules]))
     cells = 10 * len(looking.VERBS)
     same, by_chance = 1 - 1 / cells, (14 * 13 + (cells - 14) * (cells - 13)) / cells**2
-    assert found["looked_kappa"] == pytest.approx((same - by_chance) / (1 - by_chance))
+    assert found["kappa"] == pytest.approx((same - by_chance) / (1 - by_chance))
     sides = [[walk, left], [walk, right], [walk, left], [walk, right]] * 9
     found = by_name(looking.kappas(sides, [[walk, one] for one in (left, right, right, left)] * 9))
-    assert found["looked_kappa"] == 1 and found["looked_side_kappa"] == 0
-    assert found["looked_count_kappa"] == 0
-    assert by_name(looking.share_the_same(eyes, rules)) == {"looked_all_the_same": 0.9}
+    assert found["kappa"] == 1 and found["side_kappa"] == 0
+    assert found["count_kappa"] == 0
+    assert by_name(looking.share_the_same(eyes, rules)) == {"all_the_same": 0.9}
 
 
 def test_what_was_looked_at_is_complete_and_in_the_recognisers_words():
@@ -122,10 +122,10 @@ def test_only_motions_of_the_weights_that_were_looked_at_are_compared(mover, mon
     monkeypatch.setattr(looking, "motions", lambda mover: made)
     found = by_name(looking.looked_at_measures(mover, "these"))
     rules = [looking.as_seen(looking.actions(one)) for one in made]
-    assert found["looked_all_the_same"] == np.mean([one == [("walk", "", 1)] for one in rules])
+    assert found["all_the_same"] == np.mean([one == [("walk", "", 1)] for one in rules])
     again = record | {"again": {"2": [["walk", "", 1]], "5": [["jump", "", 1]]}}
     (tmp_path / "looked_at.json").write_text(json.dumps(again))
-    twice = by_name(looking.looked_at_measures(mover, "these"))["looked_twice_kappa"]
+    twice = by_name(looking.looked_at_measures(mover, "these"))["twice_kappa"]
     assert 0.4 < twice < 0.6  # of two acts each, one is the same
     assert [len(one) for one in made] == trials.unseen(6, seed=looking.SEED).frames
 
@@ -247,7 +247,13 @@ def test_all_records_are_made(monkeypatch, mover):
     monkeypatch.setattr(scores, "REPLICATIONS", 2)
     monkeypatch.setattr(parts.Studio, "mover", lambda self, name: mover)
     monkeypatch.setattr(parts, "weights_digest", lambda path: "0")
-    monkeypatch.setattr(parts, "performed", lambda m, w=1.0, steps=0: rows.performed(m, w, 2))
+    asked = []
+
+    def performed(mover, weight=1.0, steps=None):
+        asked.append((weight, steps))
+        return rows.performed(mover, weight, 2)
+
+    monkeypatch.setattr(parts, "performed", performed)
     records = {one["name"]: one for one in parts.word_records(studio, "python -m x")}
     wanted = {"words.heldout_action_accuracy", "words.wording_minimal_pair", "words.edit_changes"}
     wanted |= {"words.guided.mm_dist", "words.nearest.r_precision_top3", "words.data.fid"}
@@ -259,6 +265,7 @@ def test_all_records_are_made(monkeypatch, mover):
     assert wanted <= set(records)
     steps = {name: records[name]["seeds"]["steps"] for name in ("words.fid", "words.steps50.fid")}
     assert steps == {"words.fid": 10, "words.steps50.fid": 50}
+    assert [way for way in asked if way[1]] == [(1.0, 50)] and (parts.GUIDANCE, None) in asked
 
 
 def test_on_all_cores_the_numbers_are_the_same(monkeypatch):

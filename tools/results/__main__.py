@@ -152,7 +152,7 @@ PARTS = {
         command), "walker", "dancer", SHOWN),
     "eye-recordings": part(lambda c, command: eyes.recorded_records(
         c.walker()[:2], c.of(eyes.FULL, eyes.QUICK), command), "walker", by_name=True),
-    "guided": part(lambda c, command: dances.guided_records(c.stage, command), "dancer"),
+    "dance-ways": part(lambda c, command: dances.way_records(c.stage, command), "dancer"),
     "ear": part(lambda c, command: hearing_records(c.stage, command), "dancer"),
     "recordings": part(continued, "walker", by_name=True),
     "recordings-reconstructions": part(

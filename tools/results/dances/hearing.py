@@ -4,7 +4,7 @@ Nothing dances here. The songs are those on which the dancers are judged, and so
 are kept out of training.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -35,13 +35,13 @@ class Hearing:
     genre: Float[np.ndarray, "N"]
 
 
-def hearing_of(dancer: Dancer, songs: Sequence[Song], track: Callable = beats_of) -> Hearing:
+def hearing_of(dancer: Dancer, songs: Sequence[Song]) -> Hearing:
     """What the ear and the tracker find of the songs' beats."""
     heard = [heard_by(dancer, mel_of(song)) for song in songs]
     pairs = list(zip(heard, songs, strict=True))
     return Hearing(
         np.array([f_measure(own.beats, song.beats) for own, song in pairs]),
-        np.array([f_measure(track(song.audio), song.beats) for song in songs]),
+        np.array([f_measure(beats_of(song.audio, song.sample_rate), song.beats) for song in songs]),
         np.array([f_measure(own.downbeats, song.downbeats) for own, song in pairs]),
         np.array([float(loudest(own) == song.genre) for own, song in pairs]),
     )

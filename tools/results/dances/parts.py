@@ -23,6 +23,7 @@ from motiondiff_edu.pretrained import checkpoints
 
 from ..walks.parts import weights_digest
 from ..walks.scores import FPS, Measure, measure_of, measures
+from ..walks.trials import MORE_STEPS
 from .floor import data_floor_measures, floor_measures, floor_rows
 from .genres import SEED, GenreJudge, features_by_window, genre_measures, judge_of
 from .scores import (
@@ -55,7 +56,10 @@ from .songs import (
 )
 
 LONG = (200, 400)
-WEIGHTS = (1, 2, 4)  # of guidance
+WAYS: dict[str, dict] = {  # options of `dance_mel`; guidance 1 is none
+    **{f"guided.{weight}": {"guidance": weight} for weight in (1, 2, 4)},
+    **{f"steps{n}": {"steps": n} for n in (10, MORE_STEPS)},
+}
 FINISHED = ("bas_share", "speed_over_data", "skating_mps", "bone_rmse_cm")
 DANCES = {
     "dancer": "dancer",
@@ -249,26 +253,25 @@ def _named(name: str, rows: dict[str, np.ndarray]) -> list[Measure]:
 
 
 @dataclass(frozen=True, eq=False)
-class Guided:
-    """A dancer that always dances with one weight of guidance; it is called as a dancer is."""
+class Otherwise:
+    """A dancer that always dances with these options; it is called as a dancer is."""
 
     dancer: Dancer
-    weight: float
+    options: dict
 
     def dance_mel(
         self, mel: Float[torch.Tensor, "B M C"], frames: int, *, generator: torch.Generator
     ) -> Float[torch.Tensor, "B T 21 3"]:
-        return self.dancer.dance_mel(mel, frames, generator=generator, guidance=self.weight)
+        return self.dancer.dance_mel(mel, frames, generator=generator, **self.options)
 
 
-def guided_records(stage: Stage, command: str) -> list[dict]:
-    """The records `dancer.guided.WEIGHT.*` of the shipped dancer: at 1 it has no guidance."""
-    found = [
-        replace(measure, name=f"{weight}.{measure.name}")
-        for weight in WEIGHTS
-        for measure in danced(stage, Guided(stage.dancer("dancer"), weight)).measures
-    ]
-    return as_records(stage, "dancer", found, "dancer.guided.", command)
+def way_records(stage: Stage, command: str) -> list[dict]:
+    """The records `dancer.WAY.*` of the shipped dancer, with other options of `dance_mel`."""
+    found = []
+    for way, options in WAYS.items():
+        measured = danced(stage, Otherwise(stage.dancer("dancer"), options)).measures
+        found += as_records(stage, "dancer", measured, f"dancer.{way}.", command, **options)
+    return found
 
 
 def data_records(stage: Stage, command: str) -> list[dict]:
@@ -286,14 +289,14 @@ def dance_records(stage: Stage, part: str, command: str) -> list[dict]:
 
 
 def as_records(
-    stage: Stage, name: str, found: list[Measure], prefix: str, command: str
+    stage: Stage, name: str, found: list[Measure], prefix: str, command: str, **options
 ) -> list[dict]:
-    """The measures of the weights of this name as records."""
+    """The measures of the weights of this name as records; `options`: other ones of `dance_mel`."""
     seeds = {
         "data": UNSEEN,
         "songs": stage.size.songs,
         "sampling": list(range(stage.size.seeds)),
         "steps": STEPS,
-    }
-    seeds["weights"] = weights_digest(stage.weights[name])
+        "weights": weights_digest(stage.weights[name]),
+    } | options
     return [measure.as_record(prefix, seeds, command) for measure in found]

@@ -1,8 +1,8 @@
 """What each departure from masked sampling gains: all of them, then all but one.
 
 An in-betweener is shown what is given, and needs no guidance and no blending. So what these gain
-is measured on the dancer without music, which is not shown it. The gaps, motions and noise are the
-same for every row.
+is measured on the dancer without music, which is not shown it. The gaps, motions, noise, and the
+number of steps are the same for every row; masked sampling needs more than the in-betweener.
 Source: MoFusion 4.4, and `motiondiff_edu.beyond`.  Notebook: 15
 """
 

@@ -22,6 +22,7 @@ from motiondiff_edu.editing.masks import gap
 from motiondiff_edu.metrics.keyframes import keyframe_error, npss_parts, seam_jump, unknown_error
 from motiondiff_edu.metrics.walks import skating
 from motiondiff_edu.motion.dance_frame import at_origin
+from motiondiff_edu.performers import dancer
 from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.performers.inbetweener import Inbetweener
 from motiondiff_edu.performers.performer import STEPS
@@ -46,7 +47,7 @@ class InbetweenSize:
     motions: int = 12
     samples: int = 10
     steps: int = STEPS
-    masked_steps: int = 25  # of masked sampling, for which ten are too few
+    masked_steps: int = dancer.STEPS  # of masked sampling
 
 
 FULL = InbetweenSize()
@@ -92,8 +93,8 @@ def filled(
     """
     known, draw = middle(length), torch.Generator().manual_seed(length)
     options = {"steps": size.masked_steps, "generator": draw}
-    holes = np.where(known[..., None], truth, np.nan)
     made = samples_of(shown, truth, known, size, draw)
+    holes = np.where(known[..., None], truth, np.nan)
     paper = [inpaint(masked, one, known, **options)[0] for one in holes]
     free = [inpaint(masked, one, np.zeros_like(known), **options)[0] for one in truth]
     flat = [[fill(one, known) for one in truth] for fill in (linear, spherical)]

@@ -18,7 +18,7 @@ from motiondiff_edu.beyond.back_with_known import masked_way_back
 from motiondiff_edu.editing.inpaint import guide_and_blend, inpaint
 from motiondiff_edu.motion.root_frame import to_world
 from motiondiff_edu.motion.skeleton import HIPS, J
-from motiondiff_edu.performers.dancer import Dancer
+from motiondiff_edu.performers.dancer import STEPS, Dancer
 from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.reconstruction import plain_way_back
@@ -65,7 +65,7 @@ def masked(
     """So many repairs of each of `masked_window`'s pasts by masked sampling, or `fill`."""
     draw = torch.Generator().manual_seed(0)
     holes = np.where(known[..., None], world, np.nan)
-    options = {"samples": samples, "steps": 25, "generator": draw}
+    options = {"samples": samples, "steps": STEPS, "generator": draw}
     made = [fill(dancer, one, seen, **options) for one, seen in zip(holes, known, strict=True)]
     return np.stack(made, 1)
 

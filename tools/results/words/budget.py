@@ -31,7 +31,7 @@ from .rows import performed
 from .scores import RETRIEVED, Panel, by_trial, nearer, retrieved, sliding
 from .trials import UNSEEN, Positions, unseen
 
-STEPS = 25  # of DDIM
+STEPS = 25  # of DDIM: most rows were measured so
 SIZES = replace(MOVER.config, widths=(48, 48, 64), plan_widths=(24, 24, 32))
 SMALL = replace(MOVER, config=SIZES, steps=2400, plan_steps=0, frames=1024)
 ALONE = replace(SIZES.of_one(), D=moving_frame.D)

@@ -95,7 +95,7 @@ def looked_at_measures(mover: Mover, digest: str) -> list[Measure]:
     """Cohen's kappa of eyes and rules: of verbs, of sides, and of counts.
 
     Verbs: is it there, for every clip and verb. Sides and counts: of the verbs that both found, and
-    that have a side or are counted. `looked_twice_kappa`: of two that looked at the same clips.
+    that have a side or are counted. `twice_kappa`: of two that looked at the same clips.
     There is nothing to compare, and so no measure, if other weights were looked at.
     """
     record = json.loads(LOOKED_AT.read_text())
@@ -107,7 +107,7 @@ def looked_at_measures(mover: Mover, digest: str) -> list[Measure]:
     if again := record.get("again"):
         others = [[tuple(one) for one in seen] for seen in again.values()]
         same = [eyes[int(number)] for number in again]
-        found.append(replace(kappas(same, others)[0], name="looked_twice_kappa"))
+        found.append(replace(kappas(same, others)[0], name="twice_kappa"))
     return found
 
 
@@ -134,9 +134,9 @@ def kappas(eyes: Sequence[list[Seen]], rules: Sequence[list[Seen]]) -> list[Meas
         return kappa(*zip(*pairs, strict=True)) if pairs else np.nan
 
     return [
-        measure_of("looked_kappa", "kappa", of_verbs, clips),
-        measure_of("looked_side_kappa", "kappa", partial(of, 1), clips),
-        measure_of("looked_count_kappa", "kappa", partial(of, 2), clips),
+        measure_of("kappa", "kappa", of_verbs, clips),
+        measure_of("side_kappa", "kappa", partial(of, 1), clips),
+        measure_of("count_kappa", "kappa", partial(of, 2), clips),
     ]
 
 
@@ -163,7 +163,7 @@ def matched(eyes: list[Seen], rules: list[Seen]) -> list[tuple[Seen, Seen]]:
 def share_the_same(eyes: Sequence[list[Seen]], rules: Sequence[list[Seen]]) -> list[Measure]:
     """The share of clips for which both lists agree in everything, order included."""
     same = np.array([a == b for a, b in zip(eyes, rules, strict=True)])
-    return [measure_of("looked_all_the_same", "share", np.mean, same)]
+    return [measure_of("all_the_same", "share", np.mean, same)]
 
 
 def main(folder: Path) -> None:

@@ -209,14 +209,17 @@ def edited_by_words(studio: Studio) -> Found:
     return {"words.": edit_measures(studio.mover("mover"), edit_trials(studio.size.edits))}
 
 
+LOOKED_AT = "words.looked_"
+
+
 def looked_at(studio: Studio) -> Found:
     """The recogniser beside eyes."""
     digest = weights_digest(studio.weights["mover"])
-    return {"words.": looked_at_measures(studio.mover("mover"), digest)}
+    return {LOOKED_AT: looked_at_measures(studio.mover("mover"), digest)}
 
 
 PARTS = (  # the longest first
-    guided, as_shipped, more_steps, guided_variety, held_out, without_text, edited_by_words,
+    more_steps, guided, as_shipped, guided_variety, held_out, without_text, edited_by_words,
     variety, looked_at,
 )  # fmt: skip
 
@@ -243,13 +246,12 @@ def word_records(
     """All measures of the shipped mover, and of the rows without a network."""
     size = studio.size
     seeds = {"data": UNSEEN, "edits": UNSEEN + 1, "variety": VARIETY, "looked_at": SEED}
-    seeds |= {"trials": size.trials, "sampling": 0, "steps": STEPS}
-    seeds |= {"looked_at_steps": LOOKED_AT_STEPS}
-    more = {WITH_MORE_STEPS: {"steps": MORE_STEPS}}
+    seeds |= {"trials": size.trials, "sampling": 0}
+    steps = {WITH_MORE_STEPS: MORE_STEPS, LOOKED_AT: LOOKED_AT_STEPS}
     # here the trials are made, once: every process gets them with the studio
     seeds |= {"weights": weights_digest(studio.weights["mover"]), "judges": len(studio.judges)}
     return [
-        measure.as_record(prefix, seeds | more.get(prefix, {}), command)
+        measure.as_record(prefix, seeds | {"steps": steps.get(prefix, STEPS)}, command)
         for found in run(PARTS, studio)
         for prefix, measures in found.items()
         for measure in measures
