@@ -13,9 +13,11 @@ import torch
 from motiondiff_edu.baselines.transformer import DanceTransformer, TransformerConfig
 from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
 from motiondiff_edu.performers.hearing_mofusion import HearingConfig
+from motiondiff_edu.recipes.dancer import DANCER
+from motiondiff_edu.recipes.mofusion import KINEMATIC
 from tools.results import __main__ as command
 from tools.results.dances import departures, timing
-from tools.results.dances.departures import FULL, QUICK, VARIANTS, recipe_of
+from tools.results.dances.departures import BASE, FULL, QUICK, VARIANTS, recipe_of
 from tools.results.dances.parts import DanceSize
 from tools.results.dances.scores import rows_of
 from tools.results.intervals import interval
@@ -65,6 +67,9 @@ def test_each_variant_differs_from_its_rival_in_what_its_words_say(tiny):
         "guidable": {"no_music"},
     }
     assert set(differing) | {"base"} == set(VARIANTS)
+    lighter = [recipe_of(n, 0, FULL).kinematic for n in ("light-kinematics", "no-kinematics")]
+    assert BASE.kinematic == KINEMATIC and lighter == [DANCER.kinematic, None]
+    assert DANCER.kinematic.skeleton < KINEMATIC.skeleton / 10
     for name, wanted in differing.items():
         (rival,) = VARIANTS[name].rivals
         own, other = (asdict(recipe_of(n, 0, FULL)) for n in (name, rival))

@@ -1,9 +1,10 @@
 """What each departure of the dancer is worth at its own size, from the simplest recipe up.
 
 `base` is MoFusion at the shipped width: eps with the skip, Adam, the cosine schedule, one linear
-layer of the music, and kinematic losses weighted by alpha_bar. Each other variant adds what its
-words say to another one. A training has a quarter of the shipped dancer's steps. Dances are sampled
-as `Dancer.dance` does it, and measured before the clean-up.
+layer of the music, and kinematic losses weighted by alpha_bar, thirteen times as heavy as the
+shipped dancer's. Each other variant adds what its words say to another one. A training has a
+quarter of the shipped dancer's steps. Dances are sampled as `Dancer.dance` does it, and measured
+before the clean-up.
 docs/results/dancer-departures/plan.json has the validation loss of `base` for each rate that was
 tried, after 300 steps; an optimiser has the rate with the smallest one.
 Source: MoFusion 3, 4.1.  Notebook: 12, 13
@@ -99,6 +100,8 @@ def sweep(size: Size, runs: Path) -> Sweep:
         found = {"data": UNSEEN, "songs": measured.songs, "samples": measured.seeds}
         found |= {"pieces": [measured.pieces, measured.each], "ddim_steps": STEPS, "eta": ETA}
         found |= {"steps": recipe.steps, "rate": recipe.lr, "trained_songs": recipe.songs}
+        heavy = recipe.kinematic
+        found |= {"kinematic": [heavy.skeleton, heavy.asymmetry] if heavy else []}
         return found | {"widths": list(recipe.config.widths)}
 
     return Sweep(
