@@ -270,7 +270,7 @@ def way_records(stage: Stage, command: str) -> list[dict]:
     found = []
     for way, options in WAYS.items():
         measured = danced(stage, Otherwise(stage.dancer("dancer"), options)).measures
-        found += as_records(stage, "dancer", measured, f"dancer.{way}.", command, **options)
+        found += as_records(stage, "dancer", measured, f"dancer.{way}.", command, options)
     return found
 
 
@@ -285,11 +285,11 @@ def dance_records(stage: Stage, part: str, command: str) -> list[dict]:
     """The records of a part: "dancer", "dancer-plain", "regression", or "unheard"."""
     unheard = part == "unheard"
     found = unheard_measures(stage) if unheard else dancer_measures(stage, part)
-    return as_records(stage, DANCES[part], found, "dancer." if unheard else f"{part}.", command)
+    return as_records(stage, DANCES[part], found, "dancer." if unheard else f"{part}.", command, {})
 
 
 def as_records(
-    stage: Stage, name: str, found: list[Measure], prefix: str, command: str, **options
+    stage: Stage, name: str, found: list[Measure], prefix: str, command: str, options: dict
 ) -> list[dict]:
     """The measures of the weights of this name as records; `options`: other ones of `dance_mel`."""
     seeds = {
