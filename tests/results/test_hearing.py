@@ -31,7 +31,7 @@ def test_beats_are_counted_as_they_are_heard(monkeypatch, faster, beats):
     measures = {one.name: one.value for one in hearing_measures(found)}
     low, high = beats
     assert low <= measures["beats_f"] <= high
-    assert measures["tracker_f"] > 0.5 and measures["genre_accuracy"] == 1
+    assert measures["tracker_f"] > 0.9 and measures["genre_accuracy"] == 1
     assert measures["downbeats_f"] > 0.85
 
 

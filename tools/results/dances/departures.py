@@ -100,8 +100,8 @@ def sweep(size: Size, runs: Path) -> Sweep:
         found = {"data": UNSEEN, "songs": measured.songs, "samples": measured.seeds}
         found |= {"pieces": [measured.pieces, measured.each], "ddim_steps": STEPS, "eta": ETA}
         found |= {"steps": recipe.steps, "rate": recipe.lr, "trained_songs": recipe.songs}
-        heavy = recipe.kinematic
-        found |= {"kinematic": [heavy.skeleton, heavy.asymmetry] if heavy else []}
+        weights = recipe.kinematic
+        found |= {"kinematic": [weights.skeleton, weights.asymmetry] if weights else []}
         return found | {"widths": list(recipe.config.widths)}
 
     return Sweep(

@@ -267,9 +267,9 @@ class Otherwise:
 
 def way_records(stage: Stage, command: str) -> list[dict]:
     """The records `dancer.WAY.*` of the shipped dancer, with other options of `dance_mel`."""
-    found = []
+    dancer, found = stage.dancer("dancer"), []
     for way, options in WAYS.items():
-        measured = danced(stage, Otherwise(stage.dancer("dancer"), options)).measures
+        measured = danced(stage, Otherwise(dancer, options)).measures
         found += as_records(stage, "dancer", measured, f"dancer.{way}.", command, options)
     return found
 
