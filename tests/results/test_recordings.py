@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import torch
 
 import motiondiff_edu as md
 from data_synth.walking import walk
@@ -226,6 +227,23 @@ def test_a_variant_is_trained_and_measured(folder, tmp_path, monkeypatch):
     assert seeds[0] != seeds[1]
 
 
+def test_the_dancer_that_is_not_shown_what_is_given_keeps_it(folder, tmp_path):
+    one = trainings.trained(trainings.NOT_SHOWN, 0, trainings.QUICK, tmp_path / "runs")
+    assert not (tmp_path / "runs").exists(), "nothing is trained"
+    (_, motion), *_ = inbetweens.windows_of(QUICK)
+    truth, known = motion.positions, keyframes(len(motion), 20)
+
+    def filled(positions):
+        draw = torch.Generator().manual_seed(0)
+        return one.fill(positions, known, samples=2, steps=3, remainder=1.0, generator=draw)
+
+    made = filled(truth)
+    assert np.isfinite(made).all() and not np.allclose(*made)
+    np.testing.assert_array_equal(made[:, known], truth[known][None].repeat(2, 0))
+    blind = filled(np.where(known[..., None], truth, 9.0))
+    np.testing.assert_array_equal(blind, made, "it has seen the truth")
+
+
 def test_a_row_of_the_budget_is_trained_and_no_other_part(monkeypatch, tmp_path):
     """The names of other parts begin alike."""
     asked = []
@@ -247,6 +265,7 @@ def test_variants_differ_from_the_recipe_in_what_they_say():
             if value != getattr(ours, key)
         }
         for name in trainings.VARIANTS
+        if name != trainings.NOT_SHOWN
     }
     assert changed["no-recordings"] == {"name", "recordings"}
     configs = {name: trainings.recipe_of(name, 1, trainings.FULL).config for name in changed}

@@ -1,19 +1,27 @@
 """What departures, recordings and variations are worth for in-betweens: trainings of equal length.
 
 Each row differs from another, or from the recipe `inbetweener`, in what its words name. It is
-trained for 2,500 of the recipe's 10,000 steps. All are judged on recordings of people whom none has
-seen, with a keyframe a second.
+trained for 2,500 of the recipe's 10,000 steps. `not-shown` trains nothing: it is the shipped dancer
+without music, as notebook 15 steers it. All are judged on recordings of people whom none has seen,
+with a keyframe a second.
 """
 
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
+import numpy as np
+from jaxtyping import Float
+
+from motiondiff_edu.editing.inpaint import guide_and_blend, inpaint
+from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.performers.inbetweener import Inbetweener
 from motiondiff_edu.performers.performer import STEPS
+from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.recipes.inbetweener import INBETWEENER, InbetweenerRecipe, train_inbetweener
 
 from ..sweep import Sweep, Variant, differences
+from ..walks.parts import weights_digest
 from .inbetweens import KINDS, SECOND, columns, in_turn, windows_of
 from .windows import RecordedSize
 
@@ -23,6 +31,7 @@ def seen(activity: bool, turning: bool) -> dict:
     return {"config": replace(INBETWEENER.config, activity=activity, turning=turning)}
 
 
+NOT_SHOWN, UNCONDITIONAL = "not-shown", "unconditional"
 VARIANTS = {
     "plain": Variant("lines alone", seen(False, False)),
     "activity": Variant(
@@ -41,6 +50,10 @@ VARIANTS = {
         "no other limbs, pelvises, upper bodies and levels, no stages; other paces for recordings "
         "alone",
         {"variations": 0.0, "levels": 0.0, "paces": 0.0, "stages": 0.0}, {"ours": "ours"},
+    ),
+    NOT_SHOWN: Variant(
+        "a network that is not shown what is given, guided and blended; no recordings either",
+        rivals={"no-recordings": "no-recordings"},
     ),
 }  # fmt: skip
 
@@ -71,11 +84,28 @@ def recipe_of(name: str, seed: int, budget: Budget) -> InbetweenerRecipe:
     return replace(INBETWEENER, **settings, **budget.training | VARIANTS[name].recipe)
 
 
-def trained(name: str, seed: int, budget: Budget, runs: Path) -> Inbetweener:
+@dataclass(frozen=True)
+class NotShown:
+    """In-betweens by a dancer without music, which is guided and blended."""
+
+    dancer: Dancer
+
+    def fill(
+        self, positions, known, *, samples: int, steps: int, remainder: float, generator
+    ) -> Float[np.ndarray, "S T J 3"]:
+        """As `Inbetweener.fill`; `remainder` has no meaning, so that a second try is a draw."""
+        how = {"samples": samples, "steps": steps, "generator": generator}
+        holes = np.where(known[..., None], positions, np.nan)
+        return inpaint(self.dancer, holes, known, steer=guide_and_blend, **how)
+
+
+def trained(name: str, seed: int, budget: Budget, runs: Path) -> Inbetweener | NotShown:
     """The network of a variant.
 
     A run that was killed continues; one that is finished is only read.
     """
+    if name == NOT_SHOWN:
+        return NotShown(checkpoints.load(UNCONDITIONAL))
     runs.mkdir(parents=True, exist_ok=True)
     run = runs / f"{name}-{seed}.safetensors"
     return train_inbetweener(recipe_of(name, seed, budget), run, log=partial(print, flush=True))
@@ -84,14 +114,17 @@ def trained(name: str, seed: int, budget: Budget, runs: Path) -> Inbetweener:
 def sweep(budget: Budget, runs: Path) -> Sweep:
     """The trainings, with a keyframe a second; intervals are over trainings and persons."""
 
-    def measure(name: str, inbetweener: Inbetweener, seed: int) -> dict:
+    def measure(name: str, inbetweener: Inbetweener | NotShown, seed: int) -> dict:
         windows, samples = windows_of(budget.size), budget.size.samples
         rows = in_turn([(inbetweener, motion, SECOND, samples) for _, motion in windows])
         return columns(rows, [source for source, _ in windows])
 
     def about(name: str) -> dict:
-        found = {"trained_steps": recipe_of(name, 0, budget).steps}
-        return found | {"samples": budget.size.samples, "steps": STEPS}
+        if name == NOT_SHOWN:
+            network = {"weights": weights_digest(checkpoints.available()[UNCONDITIONAL])}
+        else:
+            network = {"trained_steps": recipe_of(name, 0, budget).steps}
+        return network | {"samples": budget.size.samples, "steps": STEPS}
 
     return Sweep(
         "inbetween-budget", VARIANTS, lambda name, seed: trained(name, seed, budget, runs), measure,
