@@ -32,21 +32,32 @@ pytestmark = pytest.mark.skipif(
 )
 
 
+def with_files(place):
+    """A folder, with the files that the examples read."""
+    given = walk(constant_control(1.0, seconds=WALKED), seed=5).world()
+    write_bvh(place / "my_walk.bvh", given)
+    soundfile.write(place / "song.ogg", compose(3, "pop", seconds=SUNG).audio, 16_000)
+    (place / "my_walks").mkdir()
+    write_bvh(place / "my_walks" / "one.bvh", given)
+    (place / "my_dances").mkdir()
+    write_bvh(place / "my_dances" / "one.bvh", np.concatenate([given] * 3))  # 6 s
+    soundfile.write(place / "my_dances" / "one.wav", compose(4, "pop", seconds=6.0).audio, 16_000)
+    return place
+
+
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """A folder with the files that the examples read."""
-    given = walk(constant_control(1.0, seconds=WALKED), seed=5).world()
-    write_bvh(tmp_path / "my_walk.bvh", given)
-    soundfile.write(tmp_path / "song.ogg", compose(3, "pop", seconds=SUNG).audio, 16_000)
-    (tmp_path / "my_walks").mkdir()
-    write_bvh(tmp_path / "my_walks" / "one.bvh", given)
-    (tmp_path / "my_dances").mkdir()
-    write_bvh(tmp_path / "my_dances" / "one.bvh", np.concatenate([given] * 3))  # 6 s
-    soundfile.write(
-        tmp_path / "my_dances" / "one.wav", compose(4, "pop", seconds=6.0).audio, 16_000
-    )
     monkeypatch.chdir(tmp_path)
-    return tmp_path
+    return with_files(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def guide(root, tmp_path_factory):
+    """What the examples of the guide have named, and the folder of their files."""
+    place = with_files(tmp_path_factory.mktemp("guide"))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(place)
+        return run(root, "docs/USING.md"), place
 
 
 def run(root, page: str) -> dict:
@@ -73,8 +84,8 @@ def test_three_lines_continue_a_recording(root, folder):
     assert len(made["dance"]) == min(SUNG, 10) * 20
 
 
-def test_the_examples_of_the_guide_run_in_order(root, folder):
-    made = run(root, "docs/USING.md")
+def test_the_examples_of_the_guide_run_in_order(guide):
+    made, folder = guide
     walked, given = made["walk"].positions, made["known"]
     assert len(made["more"]) == 7 * 20
     assert load_clip(folder / "more.bvh").control[80:120, 2].mean() == pytest.approx(0.6, abs=0.1)
@@ -91,13 +102,13 @@ def test_the_examples_of_the_guide_run_in_order(root, folder):
     assert len(made["clapping"]) == len(made["walk"])
 
 
-def test_the_lines_for_training_write_a_walker_and_a_dancer_that_perform(root, folder):
-    made = run(root, "docs/USING.md")
+def test_the_lines_for_training_write_a_walker_and_a_dancer_that_perform(root, guide):
+    made, folder = guide
     assert made["step"].step == 2
-    walker, dancer = (md.load(f"my_{name}.safetensors") for name in ("walker", "dancer"))
+    walker, dancer = (md.load(folder / f"my_{name}.safetensors") for name in ("walker", "dancer"))
     more = walker.walk(made["walk"], md.joystick([(0.5, 1, 0, 0)]), progress=False)
     assert len(more) == 10
-    assert len(dancer.dance("song.ogg", steps=2, progress=False)) == SUNG * 20
+    assert len(dancer.dance(folder / "song.ogg", steps=2, progress=False)) == SUNG * 20
     # the same lines in both pages, each copied as it stands
     (ours,) = (code for code in blocks(root, "README.md", "python") if "train_steps(" in code)
     assert ours in blocks(root, "docs/USING.md", "python")

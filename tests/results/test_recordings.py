@@ -178,7 +178,8 @@ def test_in_betweens_of_windows_are_measured(folder, monkeypatch):
 def test_on_all_cores_the_numbers_are_the_same(folder):
     inbetweener, windows = md.load("inbetweener"), inbetweens.windows_of(QUICK)
     tasks = [(inbetweener, motion, 10, 1) for _, motion in windows[:2]]
-    assert inbetweens.on_all_cores(tasks) == inbetweens.in_turn(tasks)
+    measured = inbetweens.measured_alone
+    assert results.on_all_cores(measured, tasks) == [measured(task) for task in tasks]
 
 
 def test_windows_of_a_file_are_cut_at_even_distances(folder):

@@ -13,9 +13,7 @@ from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.performers.networks import network
 from motiondiff_edu.pretrained.judges import judges
 from motiondiff_edu.recipes.mover import MOVER
-from tools.results.intervals import interval
 from tools.results.sweep import run
-from tools.results.walks import scores as walk_scores
 from tools.results.words import budget, edits, looking, parts, rows, scores, trials
 
 
@@ -266,22 +264,6 @@ def test_all_records_are_made(monkeypatch, mover):
     steps = {name: records[name]["seeds"]["steps"] for name in ("words.fid", "words.steps50.fid")}
     assert steps == {"words.fid": 10, "words.steps50.fid": 50}
     assert [way for way in asked if way[1]] == [(1.0, 50)] and (parts.GUIDANCE, None) in asked
-
-
-def test_on_all_cores_the_numbers_are_the_same(monkeypatch):
-    # workers are other processes, which draw as often as usual
-    monkeypatch.setattr(walk_scores, "interval", interval)
-    studio = parts.Studio(replace(parts.WORD_QUICK, edits=1, trials=12))
-    chosen = (parts.edited_by_words, data_alone)
-    in_turn, at_once = (run(chosen, studio) for run in (parts.in_turn, parts.on_all_cores))
-    for one, other in zip(in_turn, at_once, strict=True):
-        assert one.keys() == other.keys()
-        for prefix, measures in one.items():
-            assert measures and list(map(str, measures)) == list(map(str, other[prefix]))
-
-
-def data_alone(studio: parts.Studio) -> parts.Found:
-    return {"data": scores.recognised(studio.trials, studio.trials.truth)}
 
 
 def test_a_choice_is_trained_and_measured(some, tmp_path, monkeypatch):

@@ -16,10 +16,14 @@ code. --render only writes the pages from the existing records.
 import argparse
 import sys
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
+from multiprocessing import get_context
 from pathlib import Path
+
+import torch
 
 from benchmarks.records import show, write_records
 from motiondiff_edu._files import replacing
@@ -117,9 +121,16 @@ def attention(c: Context, command: str) -> list[dict]:
     return attention_records(c.stage, command)
 
 
+def on_all_cores(function: Callable, tasks: Sequence) -> list:
+    """The results of a function for each task, at the same time, one thread each."""
+    start = {"mp_context": get_context("spawn"), "initializer": torch.set_num_threads}
+    with ProcessPoolExecutor(**start, initargs=(1,)) as processes:
+        return list(processes.map(function, tasks))
+
+
 def words_records(c: Context, command: str) -> list[dict]:
     studio = words.Studio(words.size_of(c.quick), c.bench.weights)
-    return words.word_records(studio, command, words.on_all_cores)
+    return words.word_records(studio, command, on_all_cores)
 
 
 def continued(c: Context, command: str) -> list[dict]:
@@ -159,7 +170,7 @@ PARTS = {
         lambda c, command: reconstructions.reconstruction_records(*c.walker(), command), "walker",
         by_name=True),
     "recordings-inbetweens": part(lambda c, command: recorded_inbetweens.inbetween_records(
-        *c.performer(SHOWN), c.recorded, command, recorded_inbetweens.on_all_cores), SHOWN,
+        *c.performer(SHOWN), c.recorded, command, on_all_cores), SHOWN,
         by_name=True),
     "real-music": part(lambda c, command: real_music.music_records(
         *c.performer("dancer"), c.of(real_music.FULL, real_music.QUICK), command), "dancer",

@@ -6,13 +6,10 @@ arcs. Intervals are over persons.
 """
 
 import warnings
-from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Callable
 from dataclasses import dataclass
-from multiprocessing import get_context
 
 import numpy as np
-import torch
 from jaxtyping import Bool, Float
 
 from motiondiff_edu.baselines.interpolation import linear, spherical
@@ -40,7 +37,6 @@ WALKS = (
 )  # fmt: skip
 
 Task = tuple[Inbetweener, Motion, int, int]  # who, what, frames between keyframes, samples
-Run = Callable[[Sequence[Task]], list[dict[str, float]]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,21 +146,17 @@ def measured_alone(task: Task) -> dict[str, float]:
     return row_of(filled(inbetweener, motion, known, samples), motion.positions, known)
 
 
-def in_turn(tasks: Sequence[Task]) -> list[dict[str, float]]:
-    return [measured_alone(task) for task in tasks]
-
-
-def on_all_cores(tasks: Sequence[Task]) -> list[dict[str, float]]:
-    """The tasks at the same time, one thread each. The numbers are those of `in_turn`."""
-    start = {"mp_context": get_context("spawn"), "initializer": torch.set_num_threads}
-    with ProcessPoolExecutor(**start, initargs=(1,)) as processes:
-        return list(processes.map(measured_alone, tasks))
-
-
 def inbetween_records(
-    inbetweener: Inbetweener, weights: str, size: RecordedSize, command: str, run: Run = in_turn
+    inbetweener: Inbetweener,
+    weights: str,
+    size: RecordedSize,
+    command: str,
+    each: Callable = map,
 ) -> list[dict]:
-    """The measures of in-betweens (`real.inbetween_*`), at other distances `real.gapN.`."""
+    """The measures of in-betweens (`real.inbetween_*`), at other distances `real.gapN.`.
+
+    `each`: `map`, or a function that calls its function for several windows at once.
+    """
     windows = windows_of(size)
     sources = [source for source, _ in windows]
     walks = sum(source.startswith(WALKS) for source in sources)
@@ -175,7 +167,7 @@ def inbetween_records(
         for every in (SECOND, *OTHERS)
         for _, motion in windows
     ]
-    rows, records = run(tasks), []
+    rows, records = list(each(measured_alone, tasks)), []
     for every in (SECOND, *OTHERS):
         here, rows = rows[: len(windows)], rows[len(windows) :]
         prefix = "real." if every == SECOND else f"real.gap{every}."

@@ -22,7 +22,7 @@ from motiondiff_edu.recipes.inbetweener import INBETWEENER, InbetweenerRecipe, t
 
 from ..sweep import Sweep, Variant, differences
 from ..walks.parts import weights_digest
-from .inbetweens import KINDS, SECOND, columns, in_turn, windows_of
+from .inbetweens import KINDS, SECOND, columns, measured_alone, windows_of
 from .windows import RecordedSize
 
 
@@ -116,7 +116,7 @@ def sweep(budget: Budget, runs: Path) -> Sweep:
 
     def measure(name: str, inbetweener: Inbetweener | NotShown, seed: int) -> dict:
         windows, samples = windows_of(budget.size), budget.size.samples
-        rows = in_turn([(inbetweener, motion, SECOND, samples) for _, motion in windows])
+        rows = [measured_alone((inbetweener, motion, SECOND, samples)) for _, motion in windows]
         return columns(rows, [source for source, _ in windows])
 
     def about(name: str) -> dict:

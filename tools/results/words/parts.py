@@ -1,14 +1,11 @@
 """The measurements of the movers by `make results`: Table 2, its fools, held-out trials, edits."""
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cached_property
-from multiprocessing import get_context
+from functools import cached_property, partial
 from pathlib import Path
 
 import numpy as np
-import torch
 from jaxtyping import Float
 
 from motiondiff_edu.performers.mover import Mover
@@ -224,26 +221,15 @@ PARTS = (  # the longest first
 )  # fmt: skip
 
 
-def in_turn(parts: Sequence[Part], studio: Studio) -> list[Found]:
-    """The parts one after the other."""
-    return [part(studio) for part in parts]
-
-
-def on_all_cores(parts: Sequence[Part], studio: Studio) -> list[Found]:
-    """The parts at the same time, one thread each. The numbers are those of `in_turn`."""
-    with ProcessPoolExecutor(mp_context=get_context("spawn")) as processes:
-        return list(processes.map(_alone, parts, [studio] * len(parts)))
-
-
-def _alone(part: Part, studio: Studio) -> Found:
-    torch.set_num_threads(1)
+def part_of(studio: Studio, part: Part) -> Found:
     return part(studio)
 
 
-def word_records(
-    studio: Studio, command: str, run: Callable[[Sequence[Part], Studio], list[Found]] = in_turn
-) -> list[dict]:
-    """All measures of the shipped mover, and of the rows without a network."""
+def word_records(studio: Studio, command: str, each: Callable = map) -> list[dict]:
+    """All measures of the shipped mover, and of the rows without a network.
+
+    `each`: `map`, or a function that calls its function for several parts at once.
+    """
     size = studio.size
     seeds = {"data": UNSEEN, "edits": UNSEEN + 1, "variety": VARIETY, "looked_at": SEED}
     seeds |= {"trials": size.trials, "sampling": 0}
@@ -252,7 +238,7 @@ def word_records(
     seeds |= {"weights": weights_digest(studio.weights["mover"]), "judges": len(studio.judges)}
     return [
         measure.as_record(prefix, seeds | {"steps": steps.get(prefix, STEPS)}, command)
-        for found in run(PARTS, studio)
+        for found in each(partial(part_of, studio), PARTS)
         for prefix, measures in found.items()
         for measure in measures
         if np.isfinite(measure.value)
