@@ -92,12 +92,13 @@ unit: $(VENV)/.test ## only the unit tests
 # The notebooks run in parallel with one thread each. With torch's own threads, two in parallel take four times as long as in turn.
 # The student edition is the same but for the exercises, which the unit tests run (docs/CONTRIBUTING.md), so it is not run again here.
 # The two longest come first, then the last: the short ones among the first then fill what is left of the time.
+# A kernel that starts, or sends its figures, leaves its core idle: so there is one notebook more than there are cores.
 # Copies are run, whose outputs are kept for the pages; for them, figures with sliders are drawn in several states.
 NOTEBOOKS ?= notebooks
 EXECUTED := build/executed
 notebooks: $(VENV)/.test ## only the notebooks (NOTEBOOKS=notebooks/student: the student edition)
 	rm -rf $(EXECUTED) && mkdir -p $(EXECUTED) && cp $(if $(filter %.ipynb,$(NOTEBOOKS)),$(NOTEBOOKS),$(NOTEBOOKS)/[0-9]*.ipynb) $(EXECUTED)
-	MOTIONDIFF_PAGES=$(PAGES) OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) --nbmake --nbmake-timeout=600 --overwrite \
+	MOTIONDIFF_PAGES=$(PAGES) OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q -n $$(( $$(getconf _NPROCESSORS_ONLN) + 1 )) --max-worker-restart=0 --nbmake --nbmake-timeout=600 --overwrite \
 		--durations=0 $$(ls $(EXECUTED)/0[57]_*.ipynb 2>/dev/null; ls -r $(EXECUTED)/*.ipynb | grep -v '/0[57]_')
 	$(BIN)/python tools/backed_numbers.py $(EXECUTED)
 
