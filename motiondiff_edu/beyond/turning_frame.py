@@ -9,7 +9,8 @@ taken from given hips or shoulders alone, so that it is known before anything is
     path of the pelvis  lines as before; what is generated around them is turned
     steps               how fast each toe must go over the ground from where it is given to where it
                         is given next: 0 for a foot that stands. The network sees it as well
-Gain: not measured yet; it will be `inbetween-budget.turning.*` in docs/RESULTS.md.
+Gain: docs/RESULTS.md, *On recordings* (`inbetween-budget.turning.*`): one in-between is a thirtieth
+nearer.
 Ours.
 """
 

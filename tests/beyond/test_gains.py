@@ -18,11 +18,7 @@ NAMES = [
 ]
 
 # nothing else may be without a measured gain
-NOT_MEASURED = {
-    "activity",
-    "turning_frame",
-    "self_attention",
-}
+NOT_MEASURED = {"self_attention"}
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
