@@ -106,8 +106,11 @@ def make_schedule(beta: Float[Tensor, "S"], name: str = "schedule") -> Schedule:
         )
     schedule = Schedule(beta, 1 - beta, torch.cumprod(1 - beta, 0), name)
     if schedule.signal_left > 0.1:
-        why = "Sampling starts from pure noise, which it never is: use more steps or larger betas."
-        warnings.warn(f"{schedule_card(schedule)} {why}", stacklevel=3)
+        warnings.warn(
+            f"{schedule_card(schedule)} Sampling starts from pure noise, which training then never "
+            "shows: use more steps or larger betas.",
+            stacklevel=3,
+        )
     return schedule
 
 

@@ -49,7 +49,7 @@ def step_by_step(toes: np.ndarray, fps: float = 20, below: float = 0.03) -> floa
 def toe_slide(mine):
     """mine(toes, fps, below): mean speed of planted toes, in m/s."""
     compare(mine, step_by_step, _toes, "skating", MISTAKES["toe_slide"])
-    return "A step in the air says nothing about sliding: it is left out, and counts as no zero."
+    return "A step in the air says nothing about sliding: it is left out, and does not count as 0."
 
 
 def _runs(rng: np.random.Generator):
