@@ -43,7 +43,8 @@ def test_the_paper_and_the_shipped_walker_are_as_the_recipes_are(table):
     assert said["noise schedule"] == ("unspecified", f"*{WALKER.schedule}*")  # by MoDiff
     assert said["steps"][1] == f"{WALKER_TRUNK.steps:,}, then {WALKER.steps:,}"
     assert said["windows a step"] == (str(WALKER_PAPER.batch), str(WALKER.batch))
-    assert said["past"][1] == f"noise, {WALKER.past_noise:g}; diffusion dropout at the end"
+    noise = f"noise, up to {WALKER.past_noise:g} std"
+    assert said["past"][1] == f"{noise}; diffusion dropout at the end"
     assert said["predicts"][1] == "eps, with the skip" and WALKER.config.skip
     assert WALKER.dropout == P_D and not WALKER_PLAIN.dropout and not WALKER_TRUNK.dropout
     assert WALKER.config.target == "eps"
