@@ -76,7 +76,7 @@ test: $(VENV)/.test ## set up .venv and run everything: lint, unit tests, notebo
 
 # What each worker would otherwise do for itself when it starts: Python's bytecode of all that the tests import,
 imported: $(VENV)/.test
-	@$(BIN)/python -m pytest -q --collect-only -m "not browser" >/dev/null || true # what is wrong with a test, its run says
+	@$(BIN)/python -m pytest -q -p no:nbmake --collect-only -m "not browser" >/dev/null || true # what is wrong with a test, its run says
 
 # and librosa's functions, compiled (conftest.py gives each worker a copy).
 tracker: $(VENV)/.test
@@ -84,7 +84,8 @@ tracker: $(VENV)/.test
 		NUMBA_CACHE_DIR=build/numba/begun $(BIN)/python -m motiondiff_edu.conditions.compiled && mv build/numba/begun build/numba/first; }
 
 # A worker that dies ends the run as a failure. By default pytest-xdist starts another one, and may then wait for ever.
-WORKERS := -n auto --max-worker-restart=0
+# The plugin that runs notebooks takes longer to import than all of pytest.
+WORKERS := -n auto --max-worker-restart=0 -p no:nbmake
 
 unit: $(VENV)/.test ## only the unit tests
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) --dist loadfile --durations=40 -m "not browser"
