@@ -17,20 +17,10 @@ NAMES = [
     for record in json.loads(path.read_text(encoding="utf-8"))
 ]
 
-# nothing else may be without a measured gain
-NOT_MEASURED = {"self_attention"}
-
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_a_departure_names_the_rows_of_its_gain(path):
     head = path.read_text(encoding="utf-8").split('"""')[1]
-    if path.stem in NOT_MEASURED:
-        later = re.search(r"^Gain: not measured yet; it will be `([\w.-]+)\.\*`", head, re.M)
-        assert later, f"{path.name} does not say that its gain is not measured yet"
-        group, row = later[1].split(".", 1)
-        made = any(name.startswith(f"{later[1]}.") for name in NAMES)
-        assert not made, f"{path.name}: {row} of {group} is measured now; say what it gains"
-        return
     told = re.search(r"^Gain: docs/RESULTS(?:_ALL)?\.md.*?(?=^\S+: |\Z)", head, re.M | re.S)
     assert told, f"{path.name} does not say where its gain is measured"
     rows = re.findall(r"`([\w.-]+?)(?:\.\*)?`", told[0])
