@@ -3,6 +3,8 @@
 import shutil
 import warnings
 from dataclasses import replace
+from functools import partial
+from operator import call
 from types import SimpleNamespace
 
 import numpy as np
@@ -18,6 +20,7 @@ from motiondiff_edu.metrics.keyframes import unknown_error
 from motiondiff_edu.motion.formats.bvh.write import write_bvh
 from motiondiff_edu.recipes.inbetweener import INBETWEENER
 from tools.results import __main__ as results
+from tools.results.intervals import interval
 from tools.results.recordings import (
     continuations,
     inbetweens,
@@ -35,7 +38,10 @@ from tools.results.recordings.windows import (
     trials,
 )
 from tools.results.sweep import run
+from tools.results.walks import scores as walk_scores
 from tools.results.walks.scores import measures
+from tools.results.words import parts as words
+from tools.results.words import scores as word_scores
 
 RANGE = {"low": [-0.5, -0.5, -1.0], "high": [0.9, 0.5, 1.0]}
 
@@ -175,11 +181,27 @@ def test_in_betweens_of_windows_are_measured(folder, monkeypatch):
     assert records["real.inbetween_walks_over_interpolation"]["value"] is None  # by their names
 
 
-def test_on_all_cores_the_numbers_are_the_same(folder):
+def test_on_all_cores_the_numbers_are_the_same(folder, monkeypatch):
+    # workers are other processes, which draw as often as usual
+    monkeypatch.setattr(walk_scores, "interval", interval)
     inbetweener, windows = md.load("inbetweener"), inbetweens.windows_of(QUICK)
-    tasks = [(inbetweener, motion, 10, 1) for _, motion in windows[:2]]
-    measured = inbetweens.measured_alone
-    assert results.on_all_cores(measured, tasks) == [measured(task) for task in tasks]
+    studio = words.Studio(replace(words.WORD_QUICK, edits=1, trials=12))
+    tasks = [
+        *(
+            partial(inbetweens.measured_alone, (inbetweener, motion, 10, 1))
+            for _, motion in windows[:2]
+        ),
+        *(partial(part, studio) for part in (words.edited_by_words, data_alone)),
+    ]
+    in_turn, at_once = ([*run(call, tasks)] for run in (map, results.on_all_cores))
+    for one, other in zip(in_turn, at_once, strict=True):
+        found, again = (list(map(str, each.values())) for each in (one, other))
+        assert found and "[]" not in found and one.keys() == other.keys()
+        assert found == again
+
+
+def data_alone(studio: words.Studio) -> words.Found:
+    return {"data": word_scores.recognised(studio.trials, studio.trials.truth)}
 
 
 def test_windows_of_a_file_are_cut_at_even_distances(folder):

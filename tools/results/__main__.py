@@ -122,7 +122,7 @@ def attention(c: Context, command: str) -> list[dict]:
 
 
 def on_all_cores(function: Callable, tasks: Sequence) -> list:
-    """The results of a function for each task, at the same time, one thread each."""
+    """As `map`, for tasks at the same time, one thread each."""
     start = {"mp_context": get_context("spawn"), "initializer": torch.set_num_threads}
     with ProcessPoolExecutor(**start, initargs=(1,)) as processes:
         return list(processes.map(function, tasks))

@@ -20,6 +20,7 @@ from motiondiff_edu.performers.performer import STEPS
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.recipes.inbetweener import INBETWEENER, InbetweenerRecipe, train_inbetweener
 
+from ..inbetweens.departures import NOT_SHOWN as UNCONDITIONAL
 from ..sweep import Sweep, Variant, differences
 from ..walks.parts import weights_digest
 from .inbetweens import KINDS, SECOND, columns, measured_alone, windows_of
@@ -31,7 +32,7 @@ def seen(activity: bool, turning: bool) -> dict:
     return {"config": replace(INBETWEENER.config, activity=activity, turning=turning)}
 
 
-NOT_SHOWN, UNCONDITIONAL = "not-shown", "unconditional"
+NOT_SHOWN = "not-shown"
 VARIANTS = {
     "plain": Variant("lines alone", seen(False, False)),
     "activity": Variant(
@@ -95,8 +96,7 @@ class NotShown:
     ) -> Float[np.ndarray, "S T J 3"]:
         """As `Inbetweener.fill`; `remainder` has no meaning, so that a second try is a draw."""
         how = {"samples": samples, "steps": steps, "generator": generator}
-        holes = np.where(known[..., None], positions, np.nan)
-        return inpaint(self.dancer, holes, known, steer=guide_and_blend, **how)
+        return inpaint(self.dancer, positions, known, steer=guide_and_blend, **how)
 
 
 def trained(name: str, seed: int, budget: Budget, runs: Path) -> Inbetweener | NotShown:

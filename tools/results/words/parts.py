@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from operator import call
 from pathlib import Path
 
 import numpy as np
@@ -221,10 +222,6 @@ PARTS = (  # the longest first
 )  # fmt: skip
 
 
-def part_of(studio: Studio, part: Part) -> Found:
-    return part(studio)
-
-
 def word_records(studio: Studio, command: str, each: Callable = map) -> list[dict]:
     """All measures of the shipped mover, and of the rows without a network.
 
@@ -238,7 +235,7 @@ def word_records(studio: Studio, command: str, each: Callable = map) -> list[dic
     seeds |= {"weights": weights_digest(studio.weights["mover"]), "judges": len(studio.judges)}
     return [
         measure.as_record(prefix, seeds | {"steps": steps.get(prefix, STEPS)}, command)
-        for found in each(partial(part_of, studio), PARTS)
+        for found in each(call, [partial(part, studio) for part in PARTS])
         for prefix, measures in found.items()
         for measure in measures
         if np.isfinite(measure.value)
