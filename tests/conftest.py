@@ -77,6 +77,16 @@ def browser(chromium):
         yield running
 
 
+@pytest.fixture(scope="session")
+def lab_server(chromium, root, tmp_path_factory):
+    """A running JupyterLab, one for all tests of a process (helpers/jupyter_page.py)."""
+    pytest.importorskip("jupyterlab")
+    from jupyter_page import started_lab
+
+    with started_lab(tmp_path_factory.mktemp("lab"), root) as lab:
+        yield lab
+
+
 def pytest_runtest_setup() -> None:
     """In each test the first calls of a function are checked."""
     typecheck.calls.clear()

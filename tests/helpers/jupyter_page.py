@@ -1,6 +1,7 @@
-"""A JupyterLab that serves one notebook, and the page that shows it.
+"""A JupyterLab, and a page that shows a notebook of one cell: the CELL of the test's module.
 
-Every test of a widget with a kernel uses it. It runs the CELL of the test's module.
+Every test of a widget with a kernel uses it. One server serves all tests of a process (conftest's
+`lab_server`); each has a notebook, a kernel and a workspace of its own.
 """
 
 import json
@@ -10,12 +11,17 @@ import subprocess
 import sys
 import time
 import urllib.request
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
 
 import pytest
 from browser import PATIENCE
 
 from motiondiff_edu.course.jupyter import end
 
+TOKEN = "test"
 ASK = """async (code) => {
   const panel = window.jupyterapp.shell.currentWidget, kernel = panel.sessionContext.session.kernel;
   let text = "";
@@ -55,48 +61,66 @@ def free_port() -> int:
         return s.getsockname()[1]
 
 
-@pytest.fixture
-def lab(chromium, root, tmp_path, request):
-    """The address of a JupyterLab that serves one notebook.
+@dataclass(frozen=True)
+class Lab:
+    """A running JupyterLab, and the folder of its notebooks."""
 
-    Its cell is the CELL of the test's module.
-    """
-    pytest.importorskip("jupyterlab")
-    notebook(
-        tmp_path / "walk.ipynb", request.module.CELL.format(tests=str(root / "tests" / "helpers"))
-    )
-    port, token = free_port(), "test"
-    command = [
-        sys.executable,
-        "-m",
-        "jupyter",
-        "lab",
+    url: str
+    folder: Path
+
+    def opened(self, name: str) -> str:
+        """The address of a notebook, in a workspace of its own: no other notebook is open."""
+        return f"{self.url}/lab/workspaces/{name}/tree/{name}.ipynb?token={TOKEN}"
+
+    def end_kernels(self) -> None:
+        """End all kernels, so that those of later tests have the machine."""
+        kernels = f"{self.url}/api/kernels"
+        with urllib.request.urlopen(f"{kernels}?token={TOKEN}", timeout=60) as answer:
+            running = json.load(answer)
+        for one in running:
+            address = f"{kernels}/{one['id']}?token={TOKEN}"
+            urllib.request.urlopen(urllib.request.Request(address, method="DELETE"), timeout=60)
+
+
+@contextmanager
+def started_lab(folder: Path, root: Path) -> Iterator[Lab]:
+    """A JupyterLab that serves this folder, until the end of the block."""
+    port = free_port()
+    options = [
         "--no-browser",
         "--expose-app-in-browser",
         "--allow-root",
-    ]
-    command += [
         f"--ServerApp.port={port}",
         "--ServerApp.port_retries=0",
-        f"--IdentityProvider.token={token}",
+        f"--IdentityProvider.token={TOKEN}",
+        f"--ServerApp.root_dir={folder}",
+        "--LabApp.news_url=None",
+        "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate",
     ]
-    command += [f"--ServerApp.root_dir={tmp_path}", "--LabApp.news_url=None"]
-    command += ["--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate"]
-    settings = {
-        f"JUPYTERLAB_{name}_DIR": str(tmp_path / name) for name in ("SETTINGS", "WORKSPACES")
-    }
+    settings = {f"JUPYTERLAB_{name}_DIR": str(folder / name) for name in ("SETTINGS", "WORKSPACES")}
     settings["PYTHONPATH"] = os.pathsep.join([str(root), os.environ.get("PYTHONPATH", "")])
-    with open(tmp_path / "lab.log", "w") as log:
+    log = folder / "lab.log"
+    with log.open("w") as out:
         server = subprocess.Popen(
-            command, stdout=log, stderr=log, env=os.environ | settings, cwd=tmp_path
-        )
-    try:
-        wait_until_answering(
-            f"http://127.0.0.1:{port}/api/status?token={token}", server, tmp_path / "lab.log"
-        )
-        yield f"http://127.0.0.1:{port}/lab/tree/walk.ipynb?token={token}"
-    finally:
-        end(server)
+            [sys.executable, "-m", "jupyter", "lab", *options],
+            stdout=out, stderr=out, env=os.environ | settings, cwd=folder,
+        )  # fmt: skip
+        try:
+            url = f"http://127.0.0.1:{port}"
+            wait_until_answering(f"{url}/api/status?token={TOKEN}", server, log)
+            yield Lab(url, folder)
+        finally:
+            end(server)
+
+
+@pytest.fixture
+def lab(lab_server: Lab, root, request):
+    """The address of a notebook in JupyterLab whose one cell is the CELL of the test's module."""
+    name = f"walk-{len(list(lab_server.folder.glob('*.ipynb')))}"
+    code = request.module.CELL.format(tests=str(root / "tests" / "helpers"))
+    notebook(lab_server.folder / f"{name}.ipynb", code)
+    yield lab_server.opened(name)
+    lab_server.end_kernels()
 
 
 def wait_until_answering(address: str, server, log) -> None:
