@@ -78,11 +78,14 @@ def test_packed_assignments_are_found():
     assert packed("a, b = b, a\na, b, c = three()\nfor a, b, c in rows: pass") == []
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.relative_to(ROOT).as_posix())
-def test_one_assignment_a_line(path):
+def test_one_assignment_a_line():
     """At most two values are assigned at once, as in a swap; more go on lines of their own."""
-    cells = notebook_cells.python_of(path)
-    assert [line for cell in cells for line in packed(cell)] == []
+    assert [
+        f"{path.relative_to(ROOT)}: {line}"
+        for path in SOURCES
+        for cell in notebook_cells.python_of(path)
+        for line in packed(cell)
+    ] == []
 
 
 @pytest.mark.parametrize("what", FORBIDDEN)

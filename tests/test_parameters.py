@@ -1,10 +1,10 @@
 """A function says what it takes: at most eight parameters, and none hidden in `**options`."""
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import notebook_cells
-import pytest
 
 ROOT = Path(__file__).parent.parent
 CODE = ("motiondiff_edu", "data_synth", "tools", "benchmarks")
@@ -38,6 +38,12 @@ def functions(source: str) -> list[tuple[str, int, bool]]:
     return found
 
 
+@cache
+def functions_of(path: Path) -> list[tuple[str, int, bool]]:
+    """The functions of a file, or of a notebook's cells."""
+    return [one for cell in notebook_cells.python_of(path) for one in functions(cell)]
+
+
 def reason(path: Path, name: str) -> str | None:
     """The entry of OPEN that lets this function take any keyword, if there is one."""
     place = f"{path.as_posix()} {name}"
@@ -66,8 +72,7 @@ def test_what_may_take_any_keyword_is_there():
     found = {
         reason(path, name)
         for path in SOURCES
-        for cell in notebook_cells.python_of(path)
-        for name, _, keywords in functions(cell)
+        for name, _, keywords in functions_of(path)
         if keywords
     }
     assert found == set(OPEN)
@@ -76,10 +81,10 @@ def test_what_may_take_any_keyword_is_there():
     assert reason(ROOT / "motiondiff_edu/course/checks/nb10.py", "answer") is None
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.relative_to(ROOT).as_posix())
-def test_what_a_function_takes_can_be_read_from_its_signature(path):
+def test_what_a_function_takes_can_be_read_from_its_signature():
     """What always goes together is a small dataclass; keywords are named one by one."""
-    for cell in notebook_cells.python_of(path):
-        for name, count, keywords in functions(cell):
-            assert count <= MOST, f"{name} takes {count} parameters: group what goes together"
-            assert not keywords or reason(path, name), f"{name} takes any keyword: name them"
+    for path in SOURCES:
+        for name, count, keywords in functions_of(path):
+            where = f"{path.relative_to(ROOT)}: {name} takes"
+            assert count <= MOST, f"{where} {count} parameters: group what goes together"
+            assert not keywords or reason(path, name), f"{where} any keyword: name them"

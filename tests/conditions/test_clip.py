@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 import tiny_clip
 import torch
-from transformers import BertConfig, BertModel, CLIPTextModel
 
 from motiondiff_edu.conditions import clip
 from motiondiff_edu.conditions.clip import ClipEncoder, ClipTokens
@@ -44,6 +43,8 @@ def calls(monkeypatch) -> list:
 
 def alone(folder: Path, text: str) -> torch.Tensor:
     """The states after the last layer norm of one text, by transformers alone (M, E)."""
+    from transformers import CLIPTextModel
+
     model, tokenizer = CLIPTextModel.from_pretrained(folder).eval(), tiny_clip.tokenizer()
     ids = tokenizer(text, return_tensors="pt")
     with torch.no_grad():
@@ -169,7 +170,7 @@ def test_it_is_downloaded_where_that_is_asked_for(monkeypatch):
         asked.append((name, local_files_only))
         raise OSError("We couldn't connect to the hub\nand more")
 
-    monkeypatch.setattr(CLIPTextModel, "from_pretrained", from_pretrained)
+    monkeypatch.setattr("transformers.CLIPTextModel.from_pretrained", from_pretrained)
     with pytest.raises(clip.ClipError, match="a/b could not be downloaded .We couldn't connect"):
         clip.load("a/b", download=True)
     assert asked == [("a/b", False)]
@@ -188,7 +189,7 @@ def test_half_a_download_is_begun_again_and_not_taken_for_a_clip(folder, tmp_pat
         asked.append(name)
         raise OSError("no network")
 
-    monkeypatch.setattr(CLIPTextModel, "from_pretrained", from_pretrained)
+    monkeypatch.setattr("transformers.CLIPTextModel.from_pretrained", from_pretrained)
     with pytest.raises(clip.ClipError, match="a/b could not be downloaded"):
         clip.load("a/b", download=True)
     assert asked == ["a/b"]
@@ -198,6 +199,8 @@ def damaged(folder: Path, target: Path, what: str) -> Path:
     """A copy of a CLIP with something wrong."""
     shutil.copytree(folder, target)
     if what == "another kind":
+        from transformers import BertConfig, BertModel
+
         sizes = {"hidden_size": 32, "num_hidden_layers": 1, "num_attention_heads": 2}
         BertModel(BertConfig(vocab_size=300, intermediate_size=32, **sizes)).save_pretrained(target)
     elif what == "no weights":

@@ -65,6 +65,7 @@ def test_measures_by_hand():
 def test_a_variant_is_trained_measured_and_set_beside_its_rival(tmp_path, monkeypatch):
     tiny = replace(MODIFF_SMALL, width=16, heads=2, hidden=24, cross_layers=1, decoder_layers=1)
     monkeypatch.setattr(departures, "BASE", replace(departures.BASE, config=tiny, batch=3))
+    monkeypatch.setattr(departures, "STEPS", 2)
     sweep = departures.sweep(SMALL, tmp_path)
     rows = tmp_path / "rows"
     base = {one["name"]: one for one in run(sweep, "base", rows, "c")}
