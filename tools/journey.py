@@ -194,9 +194,9 @@ def missed(found: dict[str, Journey]) -> list[str]:
 def unproven(texts: dict[str, str], records: Iterable[dict]) -> dict[str, str]:
     """{name: why} of the departures without a proven gain; `texts` are their docstrings.
 
-    One is unproven if it says "not measured yet", or if it names groups of records (`sweep.x.*`)
-    with differences to a rival (`..._minus_rival`), and the interval of each contains 0. Those that
-    name other records are not counted.
+    One is unproven if it says "not measured yet" or "Gain: ...: none", or if it names groups of
+    records (`sweep.x.*`) with differences to a rival (`..._minus_rival`), and the interval of each
+    contains 0. Those that name other records are not counted.
     """
     apart = [one for one in records if "_minus_" in one["name"]]
     found = {}
@@ -205,6 +205,8 @@ def unproven(texts: dict[str, str], records: Iterable[dict]) -> dict[str, str]:
         named = [one for one in apart if any(one["name"].startswith(f"{g}.") for g in groups)]
         if "not measured yet" in text:
             found[name] = "not measured yet"
+        elif re.search(r"^Gain: [^:]*: none\b", text, re.M):
+            found[name] = "it gains nothing"
         elif named and all(one["low"] <= 0 <= one["high"] for one in named):
             found[name] = f"each of {len(named)} differences has an interval that contains 0"
     return found

@@ -11,6 +11,7 @@ from motiondiff_edu.motion.moving_frame import to_features
 from motiondiff_edu.motion.skeleton import MIRROR
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.performers.networks import network
+from motiondiff_edu.performers.planned_mofusion import PlannedMoFusion
 from motiondiff_edu.pretrained.judges import judges
 from motiondiff_edu.recipes.mover import MOVER
 from tools.results.sweep import run
@@ -293,5 +294,11 @@ def test_the_choices_differ_from_the_recipe_as_they_say():
     assert replace(budget.SMALL, config=MOVER.config, **lengths) == MOVER
     bag = budget.recipe_of("bag", 0, budget.FULL).config
     assert type(network(bag)).__name__ == "BagMoFusion" and bag.depth == MOVER.config.depth
+    paper = budget.recipe_of("no-self-attention", 0, budget.FULL).config
+    both = budget.Convolutions, PlannedMoFusion
+    assert [type(network(config)) for config in (paper, budget.SIZES)] == [*both]
+    beside = [{n for n, _ in network(c).named_parameters()} for c in (paper, budget.SIZES)]
+    assert {n.split(".")[0] for n in beside[1] - beside[0]} == {"planner", "performer"}
+    assert not beside[0] - beside[1] and not any(".own." in n or ".when." in n for n in beside[0])
     alone = budget.recipe_of("no-timeline", 0, budget.FULL).config
     assert alone.D == 66 and type(network(alone)).__name__ == "TextMoFusion"

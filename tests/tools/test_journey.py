@@ -145,10 +145,11 @@ def test_a_departure_is_unproven_without_a_difference_that_is_not_0():
     texts = {
         "gains": "Gain: `sweep.a.*`",
         "nothing": "Gain: `sweep.b.*` and `sweep.c.*`",
-        "other": "Gain: `sweep.c.*`",
+        "other": "Gain: `sweep.c.*`: it is nearer; no step is saved: none",
+        "said": "An idea.\nGain: docs, `sweep.a.*`: none.",
         "later": "Gain: not measured yet; it will be `sweep.a.*`",
     }
-    assert list(unproven(texts, records)) == ["nothing", "later"]
+    assert list(unproven(texts, records)) == ["nothing", "said", "later"]
 
 
 def test_the_records_have_their_names(package):

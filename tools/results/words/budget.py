@@ -20,8 +20,11 @@ from motiondiff_edu.baselines.text import BagConfig, RegressionConfig
 from motiondiff_edu.metrics import texts
 from motiondiff_edu.metrics.texts import KINDS as RECOGNISED
 from motiondiff_edu.metrics.texts import actions
+from motiondiff_edu.mofusion import MoFusion
 from motiondiff_edu.motion import moving_frame
 from motiondiff_edu.performers.mover import Mover
+from motiondiff_edu.performers.networks import register
+from motiondiff_edu.performers.planned_mofusion import PlannedConfig, PlannedMoFusion
 from motiondiff_edu.pretrained.judges import judges
 from motiondiff_edu.recipes.mover import MOVER, MoverRecipe, train_mover
 
@@ -37,6 +40,23 @@ SMALL = replace(MOVER, config=SIZES, steps=2400, plan_steps=0, frames=1024)
 ALONE = replace(SIZES.of_one(), D=moving_frame.D)
 
 
+@dataclass(frozen=True)
+class ConvolutionsConfig(PlannedConfig):
+    """The sizes of `PlannedConfig`; `depth` counts for nothing."""
+
+
+class Convolutions(PlannedMoFusion):
+    """The mover with the paper's U-Net, where frames see each other by convolutions alone."""
+
+    def __init__(self, config: ConvolutionsConfig):
+        super().__init__(config)
+        for network in (self.planner, self.performer):
+            network.unet = MoFusion(network.config)
+
+
+register("mover", Convolutions, ConvolutionsConfig)
+
+
 def network_of(config: type) -> dict:
     """Another network with the sizes of the mover without a timeline."""
     return {"config": config(**vars(ALONE))}
@@ -47,6 +67,9 @@ VARIANTS = {
     "no-timeline": Variant("no timeline", {"config": ALONE}),
     "no-kinematic": Variant("no kinematic losses", {"kinematic": None}),
     "shallow": Variant("no further layers in the middle", {"config": replace(SIZES, depth=0)}),
+    "no-self-attention": Variant(
+        "no self-attention", {"config": ConvolutionsConfig(**vars(SIZES))}
+    ),
     "columns-alike": Variant("all columns alike, without weights by their spread", {"metres": 0.0}),
     "cosine": Variant("the cosine schedule as it is", {"snr": 1.0}),
     "bag": Variant("no timeline, a bag of words", network_of(BagConfig)),
