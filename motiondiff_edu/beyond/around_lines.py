@@ -22,7 +22,6 @@ from jaxtyping import Bool, Float
 from torch import Tensor
 
 from ..motion.known import between_known
-from .turning_frame import TurningFrame, path_turned, speeds_for_path
 
 HALF = 3.0  # frames at 20 frames/s; with it, scales are those of walks, dances and recordings
 
@@ -32,40 +31,24 @@ class GivenLines:
     """What the network is shown beside r_s and s: lines, scale, and which entries are given.
 
     `less` makes a remainder smaller than the scale that the network sees says (`activity`).
-    `frame`: the headings in which poses are seen, and remainders of the path generated
-    (`turning_frame`); without one, they are seen in the frame of the first pose.
     """
 
     lines: Float[Tensor, "B T D"]
     scale: Float[Tensor, "B T D"]
     known: Bool[Tensor, "B T D"]
-    frame: TurningFrame | None = None
     less: Float[Tensor, "B T D"] | float = 1.0
 
     @classmethod
-    def of(
-        cls,
-        given: Float[Tensor, "B T D"],
-        known: Bool[Tensor, "B T D"],
-        frame: TurningFrame | None = None,
-    ) -> "GivenLines":
+    def of(cls, given: Float[Tensor, "B T D"], known: Bool[Tensor, "B T D"]) -> "GivenLines":
         """The lines through the given entries; unknown entries of `given` can be anything."""
-        return cls(between_known(given, known), scale_around(known), known, frame)
-
-    def speeds(self) -> Float[Tensor, "B T D_plus_6"]:
-        """The lines, with speeds instead of the place on the path, and the toes' steps."""
-        frame = self.frame or TurningFrame.none(self.lines)
-        return torch.cat([speeds_for_path(self.lines, frame.turned), frame.steps], -1)
+        return cls(between_known(given, known), scale_around(known), known)
 
     def remainder(self, x0: Float[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:
         """What the network generates for a motion; 0 where the motion is given."""
-        left = ((x0 - self.lines) / (self.less * self.scale)).where(~self.known, 0.0)
-        return path_turned(left, self.frame.turned) if self.frame else left
+        return ((x0 - self.lines) / (self.less * self.scale)).where(~self.known, 0.0)
 
     def whole(self, remainder: Float[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:
         """The motion with this remainder; given entries come back up to rounding."""
-        if self.frame:
-            remainder = path_turned(remainder, -self.frame.turned)
         return self.lines + self.less * self.scale * remainder
 
 

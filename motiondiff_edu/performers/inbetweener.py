@@ -20,7 +20,6 @@ from torch import Tensor, nn
 
 from ..beyond.activity import USED_AT_MOST, with_activity
 from ..beyond.around_lines import GivenLines
-from ..beyond.turning_frame import TurningFrame
 from ..ddpm import Denoiser, Generators, draw, final
 from ..inbetweening import inpaint_steps
 from ..mofusion import MoFusion, MoFusionConfig
@@ -36,19 +35,17 @@ class KeyframeConfig(MoFusionConfig):
 
     `activity`: remainders are in units that grow with how much the figure moves
     (`beyond.activity`).
-    `turning`: poses are seen in headings that turn with the figure (`beyond.turning_frame`).
     """
 
     C: int = 0
     target: str = "v"
     skip: bool = False
     activity: bool = False
-    turning: bool = False
 
     def inner(self) -> MoFusionConfig:
-        """The configuration of the U-Net, whose input is r_s, lines, scale, mask, and steps."""
+        """The configuration of the U-Net, whose input is r_s, lines, scale and mask."""
         sizes = {field.name: getattr(self, field.name) for field in fields(MoFusionConfig)}
-        return MoFusionConfig(**sizes | {"D": 4 * self.D + 6 * self.turning})
+        return MoFusionConfig(**sizes | {"D": 4 * self.D})
 
 
 class KeyframeMoFusion(nn.Module):
@@ -59,33 +56,23 @@ class KeyframeMoFusion(nn.Module):
         self.config = config
         self.unet = MoFusion(config.inner())
 
-    def frame(
-        self, features: Float[Tensor, "B T 63"], known: Bool[Tensor, "B T 21"]
-    ) -> TurningFrame:
-        """The frame in which this network sees motions (features in metres)."""
-        if not self.config.turning:
-            return TurningFrame.none(features)
-        return TurningFrame.of(features, known)
-
     def lines(
         self,
         given: Float[Tensor, "B T D"],
         known: Bool[Tensor, "B T D"],
-        frame: TurningFrame,
         activity_at_most: float = math.inf,
     ) -> GivenLines:
-        """What this network is shown of a standardised motion, which is seen in `frame` already.
+        """What this network is shown of a standardised motion.
 
         Unknown entries of `given` can be anything.
         """
-        plain = GivenLines.of(given, known, frame)
+        plain = GivenLines.of(given, known)
         return with_activity(plain, activity_at_most) if self.config.activity else plain
 
     def forward(
         self, r_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"], lines: GivenLines
     ) -> Float[Tensor, "B T D"]:
-        seen = lines.speeds() if self.config.turning else lines.lines
-        inputs = [r_s, seen, lines.scale, lines.known.to(r_s)]
+        inputs = [r_s, lines.lines, lines.scale, lines.known.to(r_s)]
         return self.unet(torch.cat(inputs, -1), s)[..., : self.config.D]
 
 
@@ -138,16 +125,14 @@ class Inbetweener(Performer):
         place, features, columns = given_features(positions, known)
         device = self.motion_scaler.mean.device
         features, columns = features[None].to(device), columns[None].to(device)
-        frame = self.model.frame(features, torch.from_numpy(known)[None].to(device))
-        given = self.motion_scaler.transform(frame.enter(features)).expand(samples, -1, -1)
+        given = self.motion_scaler.transform(features).expand(samples, -1, -1)
         columns = columns.expand(samples, -1, -1)
         r_S = draw(given, generator)
-        lines = self.model.lines(given, columns, frame.expand(samples), USED_AT_MOST)
+        lines = self.model.lines(given, columns, USED_AT_MOST)
         known_remainder = torch.zeros_like(given)
         loop = inpaint_steps(
             self.denoiser(lines), r_S, self.schedule, known_remainder, columns, steps=steps,
             generator=generator,
         )  # fmt: skip
         x0 = lines.whole(remainder * final(watch(loop)).x_s)
-        made = frame.leave(self.motion_scaler.inverse(x0))
-        return with_given(place, made, positions, known)
+        return with_given(place, self.motion_scaler.inverse(x0), positions, known)

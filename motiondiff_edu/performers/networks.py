@@ -31,7 +31,7 @@ METHODS = {
     "walker": ("encode", "decode"),
     "dancer": ("listen", "encode", "decode"),
     "mover": ("listen", "encode", "decode"),
-    "inbetweener": ("frame", "lines"),
+    "inbetweener": ("lines",),
 }
 
 

@@ -32,7 +32,7 @@ Read = TypeVar("Read")  # the object that a file describes
 # (tensors, metadata) -> the object that they describe
 Assemble = Callable[[dict[str, Tensor], dict[str, str]], Read]
 # settings of earlier versions; with this value they had no effect and are ignored
-RETIRED = {"reach": 0.0}
+RETIRED = {"reach": 0.0, "turning": False}
 LARGEST = 10_000  # of a whole number among the settings: widths, steps, frames
 SETTINGS = ("format", "network", "config", "schedule")  # they decide how the tensors are used
 
@@ -119,9 +119,9 @@ def config_of(metadata: dict[str, str], kinds: Mapping[str, type], default: str)
     defaults: dict[str, Any] = {field.name: field.default for field in fields(kind)}
     unknown = set(values) - set(defaults)
     if unknown:
-        raise CheckpointError(
-            f"{name} has unknown settings ({', '.join(sorted(unknown))}); upgrade"
-        )
+        old = unknown & set(RETIRED)
+        what = "an earlier version: train it again" if old else "a later version: upgrade"
+        raise CheckpointError(f"{name} has settings ({', '.join(sorted(unknown))}) of {what}")
     for setting, value in values.items():
         usual = type(defaults[setting])
         fits = type(value) is usual or (type(value) is int and usual is float)  # dropout = 0

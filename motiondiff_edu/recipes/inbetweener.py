@@ -29,14 +29,12 @@ from ..beyond.loss_terms import (
     weighted_by_step,
 )
 from ..beyond.schedules import shifted
-from ..beyond.turning_frame import TurningFrame
 from ..ddpm import Schedule, cosine_schedule, squared_error
 from ..kinematic_loss import Body, training_loss, weight_by_step
 from ..motion import dance_frame
 from ..motion.known import first_place
 from ..motion.scaler import Scaler
-from ..motion.skeleton import J
-from ..performers.dance_windows import FITTED, DanceWindows, toes_moved
+from ..performers.dance_windows import DanceWindows, toes_moved
 from ..performers.inbetweener import Inbetweener, KeyframeConfig
 from ..performers.networks import network
 from ..training import LossFn
@@ -73,7 +71,7 @@ class InbetweenerRecipe(MoFusionRecipe):
 
 INBETWEENER = InbetweenerRecipe(
     "inbetweener",
-    KeyframeConfig(activity=True, turning=True),
+    KeyframeConfig(activity=True),
     steps=10_000,
     snr=0.3,
     motions=1500,
@@ -93,10 +91,7 @@ def training_windows(recipe: InbetweenerRecipe) -> DanceWindows:
 
     The last data set is kept, because it takes minutes to generate.
     """
-    windows = _windows(data_of(recipe))
-    if recipe.config.turning:
-        windows = replace(windows, motion_scaler=scaler_of_turning(windows))
-    return with_path_scale(windows, recipe.path_scale)
+    return with_path_scale(_windows(data_of(recipe)), recipe.path_scale)
 
 
 NOT_DATA = (
@@ -151,14 +146,6 @@ def varied(recipe: InbetweenerRecipe) -> Iterator[Recorded]:
         if rng.uniform() < share:
             positions, contacts = warps.warped(positions, contacts, rng)
         yield positions.astype(np.float32), contacts
-
-
-def scaler_of_turning(windows: DanceWindows) -> Scaler:
-    """The scaler of the same windows, seen in each frame's own heading (`beyond.turning_frame`)."""
-    some = torch.linspace(0, len(windows) - 1, min(len(windows), FITTED)).long()
-    features = windows.motion_scaler.inverse(windows.take(some)[0])
-    known = torch.ones(*features.shape[:2], J, dtype=torch.bool)
-    return Scaler.fit(TurningFrame.of(features, known).enter(features))
 
 
 def with_path_scale(windows: DanceWindows, metres: float) -> DanceWindows:
@@ -228,10 +215,9 @@ def loss_of(recipe: InbetweenerRecipe, windows: DanceWindows, schedule: Schedule
         high = (uniform(generator, len(motion)) < recipe.stages) & known.flatten(1).any(1)
         heights = high * uniform(generator, len(motion))
         motion = as_seen(scaler.inverse(motion), known, sizes, heights)
-        frame = model.frame(motion, known)
-        motion = scaler.transform(frame.enter(motion)).to(device)
+        motion = scaler.transform(motion).to(device)
         columns = known.repeat_interleave(3, dim=-1).to(device)
-        lines = model.lines(motion, columns, frame.to(device))
+        lines = model.lines(motion, columns)
         squares = lines.scale.square()
         loss = weighted(data, squares / squares.mean((1, 2), keepdim=True))
         kinematic = None
@@ -268,7 +254,6 @@ def body_around(lines: GivenLines, scaler: Scaler) -> Body:
     """The figure of remainders: their joints in metres are those of lines and remainder."""
 
     def to_positions(remainder: Float[Tensor, "B T 63"]) -> Float[Tensor, "B T 21 3"]:
-        motion = scaler.inverse(lines.whole(remainder))
-        return dance_frame.to_positions(lines.frame.leave(motion) if lines.frame else motion)
+        return dance_frame.to_positions(scaler.inverse(lines.whole(remainder)))
 
     return replace(dance_frame.body_of(scaler), to_positions=to_positions)

@@ -20,7 +20,7 @@ VISITED = [30, 20, 30, 20, 10, 20, 10]  # three steps, each made twice
     "known", [seed(40, 10), keyframes(40, 12), body_part(40, "lower body"), gap(40, 5, 20)]
 )
 def test_an_in_between_is_what_the_network_fills_in_and_then_cleaned_up(known):
-    truth, filler = clip(), small_inbetweener(activity=True, turning=True)
+    truth, filler = clip(), small_inbetweener(activity=True)
     holes = np.where(known[..., None], truth, np.nan)
     made = inbetween(filler, holes, known, samples=2, steps=3, resample=2, generator=seeded(1))
     filled = filler.fill(holes, known, samples=2, steps=VISITED, generator=seeded(1))

@@ -5,14 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
-from gaits import rest_pose
 from seeds import seeded
 from small_dancers import small_inbetweener
 
 from data_synth.walking import walk
 from motiondiff_edu.baselines.interpolation import linear
 from motiondiff_edu.beyond.around_lines import GivenLines
-from motiondiff_edu.beyond.turning_frame import TurningFrame
 from motiondiff_edu.ddpm import ddim_steps, final
 from motiondiff_edu.editing.masks import PARTS, body_part, gap, keyframes, seed
 from motiondiff_edu.motion.dance_frame import Place, to_positions
@@ -63,12 +61,11 @@ def test_its_file_brings_it_back_and_is_no_dancers(tmp_path):
         checkpoints.load_dancer(path)
 
 
-@pytest.mark.parametrize("turning", [False, True])
 @pytest.mark.parametrize(
     "known", [seed(T, 10), keyframes(T, 7), gap(T, 5, 9), *(body_part(T, part) for part in PARTS)]
 )
-def test_known_entries_come_back_bit_by_bit_and_the_rest_is_made(known, turning):
-    filler, holes = small_inbetweener(turning=turning), np.where(known[..., None], WALKED, np.nan)
+def test_known_entries_come_back_bit_by_bit_and_the_rest_is_made(known):
+    filler, holes = small_inbetweener(), np.where(known[..., None], WALKED, np.nan)
     how = {"samples": 3, "steps": [30, 20, 30, 10]}  # back and forth
     made = filler.fill(holes, known, **how, generator=seeded(1))
     assert made.shape == (3, T, 21, 3) and np.isfinite(made).all()
@@ -114,7 +111,7 @@ def test_if_nothing_is_known_it_is_a_plain_sample():
 @pytest.mark.parametrize("known", [seed(T, 10), *(body_part(T, part) for part in PARTS)])
 def test_where_the_motion_stands_and_faces_does_not_matter(known):
     """The same motion elsewhere: what is made is the same, elsewhere."""
-    filler, place = small_inbetweener(turning=True), Place(np.array([1.0, 0, -5]), np.array(2.1))
+    filler, place = small_inbetweener(), Place(np.array([1.0, 0, -5]), np.array(2.1))
     here, there = (
         filler.fill(x, known, steps=5, generator=seeded(3)) for x in (WALKED, place.leave(WALKED))
     )
@@ -139,11 +136,10 @@ def test_with_activity_calm_motions_are_moved_less_and_lively_ones_no_more():
     x = torch.randn(1, T, 63, generator=seeded()).expand(1, T, 63)
     known = torch.zeros(x.shape, dtype=torch.bool)
     known[:, ::4] = True
-    frame = TurningFrame.none(x)
-    usual, calm = plain.lines(x, known, frame), lively.lines(x / 100, known, frame)
+    usual, calm = plain.lines(x, known), lively.lines(x / 100, known)
     assert torch.equal(usual.scale, GivenLines.of(x, known).scale)
     assert (calm.scale < 0.2 * usual.scale)[~known].all()
-    free, limited = lively.lines(x, known, frame), lively.lines(x, known, frame, 1.0)
+    free, limited = lively.lines(x, known), lively.lines(x, known, 1.0)
     ones = torch.ones_like(x)
     assert torch.equal(limited.scale, free.scale) and (free.scale > usual.scale)[~known].all()
     torch.testing.assert_close(limited.whole(ones), usual.whole(ones))
@@ -157,42 +153,13 @@ def test_in_use_the_activity_is_limited(monkeypatch):
     limits = []
     lines = KeyframeMoFusion.lines
 
-    def watched(self, given, known, frame, activity_at_most=np.inf):
+    def watched(self, given, known, activity_at_most=np.inf):
         limits.append(activity_at_most)
-        return lines(self, given, known, frame, activity_at_most)
+        return lines(self, given, known, activity_at_most)
 
     monkeypatch.setattr(KeyframeMoFusion, "lines", watched)
     one.fill(truth, known, steps=2)
     assert limits == [1.0]
-
-
-def test_a_turning_network_sees_speeds_and_steps_and_needs_no_frame():
-    model = small_inbetweener(turning=True).model
-    x, s = torch.randn(2, T, 63, generator=seeded()), torch.tensor([3, 20])
-    known = torch.zeros(x.shape, dtype=torch.bool)
-    known[:, ::6] = True
-    lines = model.lines(x, known, TurningFrame.none(x))
-    plain = model(x, s, lines)
-    torch.testing.assert_close(plain, model(x, s, GivenLines.of(x, known)))
-    moved = torch.zeros(63)
-    moved[[0, 2]] = 7.0
-    elsewhere = model.lines(x + moved, known, TurningFrame.none(x))
-    torch.testing.assert_close(model(x, s, elsewhere), plain, atol=1e-4, rtol=1e-4)
-    steps = replace(lines.frame, steps=lines.frame.steps + 1)
-    assert not torch.allclose(model(x, s, replace(lines, frame=steps)), plain)
-
-
-def test_in_betweens_of_a_figure_that_turns_do_not_shrink():
-    """Lines alone, between a first frame and one that looks back: hips stay as wide."""
-    angles = np.linspace(0, 0.95 * np.pi, T)
-    truth = np.stack([Place(np.zeros(3), np.array(a)).leave(rest_pose()[None])[0] for a in angles])
-    made, shrunk = (
-        small_inbetweener(turning=turning).fill(truth, keyframes(T, T - 1), steps=2, remainder=0.0)
-        for turning in (True, False)
-    )
-    np.testing.assert_allclose(made[0], truth, atol=1e-5)
-    width = np.linalg.norm(shrunk[0, :, 1] - shrunk[0, :, 5], axis=-1)
-    assert width.min() < 0.1 * width.max()
 
 
 def test_a_loop_that_is_watched_gives_each_step():

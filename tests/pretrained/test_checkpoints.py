@@ -381,6 +381,25 @@ NONSENSE = [
 ]
 
 
+@pytest.mark.parametrize(
+    ("setting", "refused"),
+    [
+        ({"turning": False}, ""),
+        ({"turning": True}, "turning.* of an earlier version: train it again"),
+        ({"wings": 2}, "wings.* of a later version: upgrade"),
+    ],
+)
+def test_a_setting_of_another_version(saved: Path, setting: dict, refused: str):
+    metadata = settings_of(saved)
+    config = json.loads(metadata["config"]) | setting
+    rewrite(saved, lambda tensors: None, metadata | {"config": json.dumps(config)})
+    if refused:
+        with pytest.raises(CheckpointError, match=refused):
+            load_walker(saved)
+    else:
+        assert load_walker(saved).config.width == 16
+
+
 @pytest.mark.parametrize("config", NONSENSE)
 def test_a_configuration_that_makes_no_sense(saved: Path, config: str | None):
     metadata = {"format": checkpoints.WALKER.format, "schedule": "linear", "card": "{}"}

@@ -9,13 +9,12 @@ import torch
 from data_synth.mixed import motions, sentences
 from motiondiff_edu.beyond.around_lines import GivenLines
 from motiondiff_edu.beyond.schedules import shifted
-from motiondiff_edu.beyond.turning_frame import TurningFrame
 from motiondiff_edu.ddpm import cosine_schedule, q_sample
 from motiondiff_edu.editing.inbetween import inbetween
 from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.kinematic_loss import kinematic_parts
 from motiondiff_edu.motion import dance_frame
-from motiondiff_edu.motion.skeleton import HIPS, TOES, J, joint_index
+from motiondiff_edu.motion.skeleton import HIPS, TOES, J
 from motiondiff_edu.performers.dance_windows import DanceWindows, toes_moved
 from motiondiff_edu.performers.inbetweener import KeyframeConfig, KeyframeMoFusion
 from motiondiff_edu.prediction import to_x0
@@ -26,7 +25,6 @@ from motiondiff_edu.recipes.inbetweener import (
     as_seen,
     body_around,
     loss_of,
-    scaler_of_turning,
     train_inbetweener,
     with_path_scale,
 )
@@ -101,15 +99,13 @@ def test_motions_are_seen_from_their_first_given_pose_and_resized(windows):
 
 
 @pytest.mark.parametrize("all_terms", [False, True])
-@pytest.mark.parametrize(("target", "turning"), [("x0", False), ("v", False), ("v", True)])
-def test_the_loss_of_a_batch_is_eq_4_of_what_remains_without_the_lines(
-    windows, target, turning, all_terms
-):
-    """Errors are those of x0, whatever the network predicts, and in whatever frame.
+@pytest.mark.parametrize("target", ["x0", "v"])
+def test_the_loss_of_a_batch_is_eq_4_of_what_remains_without_the_lines(windows, target, all_terms):
+    """Errors are those of x0, whatever the network predicts.
 
     With all terms: errors of changes and of the toes, and L_k of lines and remainder together.
     """
-    config = replace(SMALL, target=target, turning=turning)
+    config = replace(SMALL, target=target)
     recipe = replace(RECIPE, config=config, sizes=0.0, stages=0.0)
     if not all_terms:
         recipe = replace(recipe, kinematic=None, changes=0.0, toes=0.0)
@@ -132,10 +128,9 @@ def test_the_loss_of_a_batch_is_eq_4_of_what_remains_without_the_lines(
     torch.rand(12, generator=generator)  # sizes, who stands on a stage, and how high
     scaler = windows.motion_scaler
     seen = as_seen(scaler.inverse(motion), known, torch.ones(4), torch.zeros(4))
-    frame = TurningFrame.of(seen, known) if turning else TurningFrame.none(seen)
-    seen = scaler.transform(frame.enter(seen))
+    seen = scaler.transform(seen)
     columns = known.repeat_interleave(3, -1)
-    wanted = GivenLines.of(seen, columns, frame)
+    wanted = GivenLines.of(seen, columns)
     r0 = wanted.remainder(seen)
     assert all(torch.equal(getattr(lines, k), getattr(wanted, k)) for k in ("lines", "known"))
     steps = torch.randint(1, SCHEDULE.S + 1, (4,), generator=generator)
@@ -179,25 +174,6 @@ def test_bones_are_those_of_lines_and_remainder_together(windows):
     wanted = dance_frame.body_of(windows.motion_scaler).to_positions(motion)
     made = body.to_positions(lines.remainder(motion))
     torch.testing.assert_close(made, wanted, atol=1e-4, rtol=1e-4)
-
-
-def test_bones_are_those_of_the_world_in_a_view_too(windows):
-    motion, _, _ = windows.draw(2, seeded())
-    scaler, known = windows.motion_scaler, drawn_masks(2, T, seeded(3))
-    features = scaler.inverse(motion)
-    frame = TurningFrame.of(features, known)
-    inside = scaler.transform(frame.enter(features))
-    lines = GivenLines.of(inside, known.repeat_interleave(3, -1), frame)
-    made = body_around(lines, scaler).to_positions(lines.remainder(inside))
-    torch.testing.assert_close(made, dance_frame.to_positions(features), atol=1e-4, rtol=1e-4)
-
-
-def test_units_in_a_view_are_those_of_figures_that_face_ahead(windows):
-    """Arms are to the left and to the right there, whichever way a figure looks."""
-    turned = scaler_of_turning(windows)
-    left, right = (3 * joint_index(name) for name in ("LeftArm", "RightArm"))
-    assert turned.mean[left] > 0.1 and turned.mean[right] < -0.1
-    assert turned.std[left] < windows.motion_scaler.std[left]
 
 
 def test_a_path_is_measured_in_metres_of_the_recipe_and_motions_stay_the_same(windows):

@@ -26,25 +26,12 @@ from ..walks.parts import weights_digest
 from .inbetweens import KINDS, SECOND, columns, measured_alone, windows_of
 from .windows import RecordedSize
 
-
-def seen(activity: bool, turning: bool) -> dict:
-    """What the network sees of a figure: how much it moves, and its own heading."""
-    return {"config": replace(INBETWEENER.config, activity=activity, turning=turning)}
-
-
 NOT_SHOWN = "not-shown"
 VARIANTS = {
-    "plain": Variant("lines alone", seen(False, False)),
-    "activity": Variant(
-        "scales know how much the figure moves (`beyond/activity.py`)",
-        seen(True, False), {"plain": "plain"},
-    ),
-    "turning": Variant(
-        "poses are seen in the figure's heading (`beyond/turning_frame.py`)",
-        seen(False, True), {"plain": "plain"},
-    ),
+    "plain": Variant("lines alone", {"config": replace(INBETWEENER.config, activity=False)}),
     "ours": Variant(
-        "the recipe, which has both", {}, {"activity": "activity", "turning": "turning"}
+        "the recipe: scales know how much the figure moves (`beyond/activity.py`)", {},
+        {"plain": "plain"},
     ),
     "no-recordings": Variant("no recordings in training", {"recordings": 0}, {"ours": "ours"}),
     "no-variations": Variant(
