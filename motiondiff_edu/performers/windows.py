@@ -93,8 +93,7 @@ def held_control(
 
     With a joystick the control after the step about to be taken is not known, so a rollout holds
     it. A network that was always trained with the true future control would trust a held one as
-    well.
-    Gain: not measured yet; it will be `walker-departures.never-held.*` in docs/RESULTS.md.
+    well. No gain is claimed: who steers by hand cannot give what is ahead.
     Ours; MoDiff takes the control up to t + T_p as known.  Notebook: 07
     """
     hold = torch.rand(len(control), generator=generator) < share

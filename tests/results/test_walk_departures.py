@@ -24,7 +24,6 @@ def test_a_variant_differs_from_its_rival_in_what_its_words_say(name):
         "past-noise": {"past_noise", "dropout"},
         "no-dropout": {"dropout"},
         "both": {"dropout"},
-        "never-held": {"held_control"},
         "one-pose": {"config"},
     }
     (rival,) = VARIANTS[name].rivals

@@ -73,7 +73,6 @@ VARIANTS |= {
 }
 VARIANTS |= {
     "both": added("diffusion dropout as well", "past-noise", dropout=P_D),
-    "never-held": added("control never held", "past-noise", held_control=0.0),
     "one-pose": added("one future pose", "past-noise", config=replace(MODIFF_SMALL, T_p=1)),
 }
 
