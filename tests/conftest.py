@@ -87,6 +87,25 @@ def lab_server(chromium, root, tmp_path_factory):
         yield lab
 
 
+@pytest.fixture
+def lab_folder(lab_server, tmp_path) -> Path:
+    """Where the notebook of a test lies, and what its kernel writes."""
+    folder = lab_server.folder / tmp_path.name
+    folder.mkdir()
+    return folder
+
+
+@pytest.fixture
+def lab(lab_server, lab_folder, root, request):
+    """The address of a notebook in JupyterLab whose one cell is the CELL of the test's module."""
+    from jupyter_page import notebook
+
+    path = lab_folder / "walk.ipynb"
+    notebook(path, request.module.CELL.format(tests=str(root / "tests" / "helpers")))
+    yield lab_server.opened(path)
+    lab_server.end_kernels()
+
+
 def pytest_runtest_setup() -> None:
     """In each test the first calls of a function are checked."""
     typecheck.calls.clear()

@@ -191,10 +191,13 @@ def missed(found: dict[str, Journey]) -> list[str]:
 
 
 # ---- departures ----------------------------------------------------------------------------------
+UNPROVEN = ("not measured yet", "no gain is shown")  # what a departure says of itself
+
+
 def unproven(texts: dict[str, str], records: Iterable[dict]) -> dict[str, str]:
     """{name: why} of the departures without a proven gain; `texts` are their docstrings.
 
-    One is unproven if it says "not measured yet" or "Gain: ...: none", or if it names groups of
+    One is unproven if it says "not measured yet" or "no gain is shown", or if it names groups of
     records (`sweep.x.*`) with differences to a rival (`..._minus_rival`), and the interval of each
     contains 0. Those that name other records are not counted.
     """
@@ -203,10 +206,9 @@ def unproven(texts: dict[str, str], records: Iterable[dict]) -> dict[str, str]:
     for name, text in texts.items():
         groups = re.findall(r"`([\w.-]+)\.\*`", text)
         named = [one for one in apart if any(one["name"].startswith(f"{g}.") for g in groups)]
-        if "not measured yet" in text:
-            found[name] = "not measured yet"
-        elif re.search(r"^Gain: [^:]*: none\b", text, re.M):
-            found[name] = "it gains nothing"
+        said = [words for words in UNPROVEN if words in " ".join(text.lower().split())]
+        if said:
+            found[name] = said[0]
         elif named and all(one["low"] <= 0 <= one["high"] for one in named):
             found[name] = f"each of {len(named)} differences has an interval that contains 0"
     return found

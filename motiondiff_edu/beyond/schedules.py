@@ -4,7 +4,7 @@ More noise: if many entries carry the same information, it survives noise that h
 entry (images with more pixels, dances with more frames). A schedule for small samples then spends
 too few steps at the noise levels that decide the large structure.
 Gain: docs/RESULTS.md. No steps at low noise: *From the paper's walker to ours*
-(`walker-departures.leap.*`). More noise: not measured for the mover and the in-betweener, which
+(`walker-departures.leap.*`). More noise: not measured yet for the mover and the in-betweener, which
 have it. For dances bones alone gained, and sliding, variety and FID lost, so they do without.
 Source: Hoogeboom and others, 2023 (simple diffusion), for images; for motion, ours.
 """

@@ -19,7 +19,7 @@ from .. import reconstruction
 from ..beyond.back_with_known import FADE, blended_way_back
 from ..beyond.guidance import blended_guess
 from ..motion.cleanup import Body, clean_bones, clean_up, runs
-from ..motion.dance_frame import headings_between
+from ..motion.dance_frame import heading
 from ..motion.directions import ARMS, UPLEGS
 from ..motion.motion import MotionError, MotionWarning
 from ..motion.root_frame import FPS, smoothed_root, to_root_frame, to_world
@@ -170,7 +170,8 @@ def path_of(
 ) -> tuple[Float[np.ndarray, "T 2"], Float[np.ndarray, "T"]]:
     """Root path and heading of a motion with holes.
 
-    They come from the pelvis, and from hips and shoulders where they are known.
+    They come from the pelvis, and from hips and shoulders where they are known. Between, the
+    heading turns evenly, the short way round; before the first and after the last it stays.
 
     Raises MotionError, with the frame, if the pelvis is not known there, or if neither hips nor
     shoulders are known in any frame.
@@ -191,5 +192,6 @@ def path_of(
         raise MotionError(
             "the direction of the figure is unknown: no frame has both hips or both shoulders"
         )
-    facing = headings_between(across, has_direction)
+    seen = np.flatnonzero(has_direction)
+    facing = np.interp(np.arange(len(known)), seen, np.unwrap(heading(across[seen])))
     return smoothed_root(positions[:, HIPS][:, [0, 2]], facing)

@@ -124,11 +124,10 @@ class Inbetweener(Performer):
         generator = generator or torch.Generator().manual_seed(0)
         place, features, columns = given_features(positions, known)
         device = self.motion_scaler.mean.device
-        features, columns = features[None].to(device), columns[None].to(device)
-        given = self.motion_scaler.transform(features).expand(samples, -1, -1)
-        columns = columns.expand(samples, -1, -1)
+        given = self.motion_scaler.transform(features.to(device)).expand(samples, -1, -1)
+        columns = columns.to(device).expand(samples, -1, -1)
         r_S = draw(given, generator)
-        lines = self.model.lines(given, columns, USED_AT_MOST)
+        lines = self.model.lines(given, columns, activity_at_most=USED_AT_MOST)
         known_remainder = torch.zeros_like(given)
         loop = inpaint_steps(
             self.denoiser(lines), r_S, self.schedule, known_remainder, columns, steps=steps,

@@ -115,13 +115,16 @@ def config_of(metadata: dict[str, str], kinds: Mapping[str, type], default: str)
             f"{name} contains an unknown network, {metadata['network']}; upgrade, or register it "
             "first (performers.networks.register)"
         )
-    values = {k: v for k, v in values.items() if k not in RETIRED or v != RETIRED[k]}
     defaults: dict[str, Any] = {field.name: field.default for field in fields(kind)}
+    old = {k for k in RETIRED if k in values and k not in defaults}
+    values = {k: v for k, v in values.items() if k not in old or v != RETIRED[k]}
     unknown = set(values) - set(defaults)
     if unknown:
-        old = unknown & set(RETIRED)
-        what = "an earlier version: train it again" if old else "a later version: upgrade"
-        raise CheckpointError(f"{name} has settings ({', '.join(sorted(unknown))}) of {what}")
+        what = (
+            "an earlier version: train it again, or download it" if old else "a later one: upgrade"
+        )
+        names = ", ".join(sorted(unknown & old or unknown))
+        raise CheckpointError(f"{name} has settings ({names}) of {what}")
     for setting, value in values.items():
         usual = type(defaults[setting])
         fits = type(value) is usual or (type(value) is int and usual is float)  # dropout = 0

@@ -214,8 +214,8 @@ def loss_of(recipe: InbetweenerRecipe, windows: DanceWindows, schedule: Schedule
         sizes = 1 + recipe.sizes * (2 * uniform(generator, len(motion)) - 1)
         high = (uniform(generator, len(motion)) < recipe.stages) & known.flatten(1).any(1)
         heights = high * uniform(generator, len(motion))
-        motion = as_seen(scaler.inverse(motion), known, sizes, heights)
-        motion = scaler.transform(motion).to(device)
+        seen = as_seen(scaler.inverse(motion), known, sizes, heights)
+        motion = scaler.transform(seen).to(device)
         columns = known.repeat_interleave(3, dim=-1).to(device)
         lines = model.lines(motion, columns)
         squares = lines.scale.square()
@@ -252,8 +252,5 @@ def as_seen(
 
 def body_around(lines: GivenLines, scaler: Scaler) -> Body:
     """The figure of remainders: their joints in metres are those of lines and remainder."""
-
-    def to_positions(remainder: Float[Tensor, "B T 63"]) -> Float[Tensor, "B T 21 3"]:
-        return dance_frame.to_positions(scaler.inverse(lines.whole(remainder)))
-
-    return replace(dance_frame.body_of(scaler), to_positions=to_positions)
+    body = dance_frame.body_of(scaler)
+    return replace(body, to_positions=lambda remainder: body.to_positions(lines.whole(remainder)))

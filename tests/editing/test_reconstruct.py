@@ -12,11 +12,12 @@ from data_synth.walking import walk
 from motiondiff_edu.editing import reconstruct as module
 from motiondiff_edu.editing.reconstruct import _once, _windows, path_of, reconstruct
 from motiondiff_edu.metrics.bodies import bone_lengths
+from motiondiff_edu.motion.dance_frame import Place
 from motiondiff_edu.motion.directions import ARMS, UPLEGS
 from motiondiff_edu.motion.motion import Motion, MotionError, MotionWarning
 from motiondiff_edu.motion.root_frame import estimate_root
 from motiondiff_edu.motion.scaler import Scaler
-from motiondiff_edu.motion.skeleton import HIPS, joint_index
+from motiondiff_edu.motion.skeleton import HIPS, J, joint_index
 from motiondiff_edu.reconstruction import Rollout
 
 T_H = 10
@@ -85,6 +86,22 @@ def test_the_path_needs_hips_or_shoulders(hidden):
     whole, all_facing = path_of(one.positions, one.known)
     np.testing.assert_allclose(place, whole, atol=1e-9)
     assert np.abs(facing - all_facing).max() < 0.15  # hips and shoulders turn a little apart
+
+
+def test_a_heading_turns_the_short_way_where_hips_and_shoulders_are_lost(monkeypatch):
+    """The figure turns over pi, where an angle of arctan2 jumps; at the ends the heading stays."""
+    monkeypatch.setattr(module, "smoothed_root", lambda place, facing: (place, facing))
+    asked = np.linspace(2.0, 4.5, 60)
+    pose = walking().positions[0]
+    still = Place.of(pose).enter(pose[None])[0]
+    turning = np.stack([Place(np.zeros(3), np.array(one)).leave(still[None])[0] for one in asked])
+    known = np.ones((60, J), bool)
+    for lost in (slice(0, 5), slice(20, 40), slice(52, 60)):
+        known[lost, [*UPLEGS, *ARMS]] = False
+    known[lost, HIPS] = True
+    _, facing = path_of(turning, known)
+    wanted = np.clip(asked, asked[5], asked[51])
+    np.testing.assert_allclose(facing - facing[5] + asked[5], wanted, atol=1e-6)
 
 
 def test_the_path_of_a_whole_motion_is_the_smoothed_root():

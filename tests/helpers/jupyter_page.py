@@ -1,7 +1,7 @@
 """A JupyterLab, and a page that shows a notebook of one cell: the CELL of the test's module.
 
-Every test of a widget with a kernel uses it. One server serves all tests of a process (conftest's
-`lab_server`); each has a notebook, a kernel and a workspace of its own.
+Every test of a widget with a kernel uses it. One server serves all tests of a process, which share
+its settings (conftest's `lab_server`); each has a folder, a kernel and a workspace of its own.
 """
 
 import json
@@ -10,9 +10,10 @@ import socket
 import subprocess
 import sys
 import time
+import urllib.error
 import urllib.request
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -68,9 +69,10 @@ class Lab:
     url: str
     folder: Path
 
-    def opened(self, name: str) -> str:
+    def opened(self, notebook: Path) -> str:
         """The address of a notebook, in a workspace of its own: no other notebook is open."""
-        return f"{self.url}/lab/workspaces/{name}/tree/{name}.ipynb?token={TOKEN}"
+        path = notebook.relative_to(self.folder).as_posix()
+        return f"{self.url}/lab/workspaces/{notebook.parent.name}/tree/{path}?token={TOKEN}"
 
     def end_kernels(self) -> None:
         """End all kernels, so that those of later tests have the machine."""
@@ -78,8 +80,9 @@ class Lab:
         with urllib.request.urlopen(f"{kernels}?token={TOKEN}", timeout=60) as answer:
             running = json.load(answer)
         for one in running:
-            address = f"{kernels}/{one['id']}?token={TOKEN}"
-            urllib.request.urlopen(urllib.request.Request(address, method="DELETE"), timeout=60)
+            ended = urllib.request.Request(f"{kernels}/{one['id']}?token={TOKEN}", method="DELETE")
+            with suppress(urllib.error.HTTPError):  # it may have ended by itself
+                urllib.request.urlopen(ended, timeout=60).close()
 
 
 @contextmanager
@@ -111,16 +114,6 @@ def started_lab(folder: Path, root: Path) -> Iterator[Lab]:
             yield Lab(url, folder)
         finally:
             end(server)
-
-
-@pytest.fixture
-def lab(lab_server: Lab, root, request):
-    """The address of a notebook in JupyterLab whose one cell is the CELL of the test's module."""
-    name = f"walk-{len(list(lab_server.folder.glob('*.ipynb')))}"
-    code = request.module.CELL.format(tests=str(root / "tests" / "helpers"))
-    notebook(lab_server.folder / f"{name}.ipynb", code)
-    yield lab_server.opened(name)
-    lab_server.end_kernels()
 
 
 def wait_until_answering(address: str, server, log) -> None:

@@ -385,8 +385,11 @@ NONSENSE = [
     ("setting", "refused"),
     [
         ({"turning": False}, ""),
-        ({"turning": True}, "turning.* of an earlier version: train it again"),
-        ({"wings": 2}, "wings.* of a later version: upgrade"),
+        (
+            {"turning": True},
+            r"settings .turning. of an earlier version: train it again, or download",
+        ),
+        ({"wings": 2}, "settings .wings. of a later one: upgrade"),
     ],
 )
 def test_a_setting_of_another_version(saved: Path, setting: dict, refused: str):

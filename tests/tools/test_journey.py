@@ -145,8 +145,8 @@ def test_a_departure_is_unproven_without_a_difference_that_is_not_0():
     texts = {
         "gains": "Gain: `sweep.a.*`",
         "nothing": "Gain: `sweep.b.*` and `sweep.c.*`",
-        "other": "Gain: `sweep.c.*`: it is nearer; no step is saved: none",
-        "said": "An idea.\nGain: docs, `sweep.a.*`: none.",
+        "other": "Gain: `sweep.c.*`: it is nearer, and no gain in steps",
+        "said": "An idea.\nGain: docs, `sweep.a.*`. No gain\nis shown.",
         "later": "Gain: not measured yet; it will be `sweep.a.*`",
     }
     assert list(unproven(texts, records)) == ["nothing", "said", "later"]

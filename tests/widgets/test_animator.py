@@ -6,7 +6,7 @@ import os
 import numpy as np
 import pytest
 from browser import open_page
-from jupyter_page import ASK, lab, run_all  # noqa: F401
+from jupyter_page import ASK, run_all
 
 CELL = """import sys; sys.path.insert(0, {tests!r})
 from functools import partial
@@ -39,7 +39,7 @@ def address(monkeypatch, request, real_data):
     return request.getfixturevalue("lab")
 
 
-def test_a_real_walk_is_edited_and_saved(browser, address, tmp_path):
+def test_a_real_walk_is_edited_and_saved(browser, address, lab_folder):
     with open_page(browser, offline=False, viewport={"width": 1300, "height": 1000}) as page:
         canvas = run_all(page, address, "mde-editor")
         canvas.focus()
@@ -65,4 +65,4 @@ def test_a_real_walk_is_edited_and_saved(browser, address, tmp_path):
         kept, raised, frames, bones, heights = page.evaluate(ASK, CHECK).splitlines()[-1].split()
         assert (kept, frames, bones, heights) == ("True", "57", "True", "True")
         assert float(raised) == pytest.approx(0.2 * np.cos(0.2), abs=0.006)
-        assert (tmp_path / "in-between.bvh").is_file() and page.problems == []
+        assert (lab_folder / "in-between.bvh").is_file() and page.problems == []

@@ -4,7 +4,7 @@ mended, and read."""
 import os
 
 from browser import drawn, open_page
-from jupyter_page import ASK, lab, run_all  # noqa: F401
+from jupyter_page import ASK, run_all
 
 CELL = """import sys; sys.path.insert(0, {tests!r})
 import numpy as np
@@ -27,7 +27,7 @@ print(bench.shows_repairs, lost == [(t, hand) for t in range(3)],
 ROOT = "document.querySelector('.mde-bench').dataset"
 
 
-def test_a_hand_is_knocked_out_and_mended_in_jupyterlab(browser, lab):  # noqa: F811
+def test_a_hand_is_knocked_out_and_mended_in_jupyterlab(browser, lab):
     with open_page(browser, offline=False, viewport={"width": 1300, "height": 1000}) as page:
         canvas = run_all(page, lab, "mde-bench")
         page.get_by_label("A click on a joint changes it").select_option("one")

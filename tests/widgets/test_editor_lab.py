@@ -4,7 +4,7 @@ page agree."""
 import os
 
 from browser import drawn, open_page
-from jupyter_page import ASK, lab, run_all  # noqa: F401
+from jupyter_page import ASK, run_all
 
 CELL = """import sys; sys.path.insert(0, {tests!r})
 import torch
@@ -19,7 +19,7 @@ editor"""
 ROOT = "document.querySelector('.mde-editor').dataset"
 
 
-def test_pins_drags_and_in_betweens_in_jupyterlab(browser, lab):  # noqa: F811
+def test_pins_drags_and_in_betweens_in_jupyterlab(browser, lab):
     with open_page(browser, offline=False, viewport={"width": 1300, "height": 1000}) as page:
         canvas = run_all(page, lab, "mde-editor")
         canvas.focus()

@@ -4,7 +4,7 @@ Python hears of it."""
 import os
 
 from browser import drawn, ink, open_page
-from jupyter_page import ASK, lab, run_all  # noqa: F401
+from jupyter_page import ASK, run_all
 
 CELL = """import sys; sys.path.insert(0, {tests!r})
 from click_track import RATE, clicks
@@ -18,7 +18,7 @@ HEARD = "document.querySelector('.mde-player audio').currentTime"
 SHOWN = "Number(document.querySelector('.mde-player').dataset.frame)"
 
 
-def test_figure_plays_in_jupyterlab_and_python_sees_it(browser, lab):  # noqa: F811
+def test_figure_plays_in_jupyterlab_and_python_sees_it(browser, lab):
     size = {"width": 1300, "height": 900}
     with open_page(browser, offline=False, viewport=size) as page:
         canvas = run_all(page, lab, "mde-player")

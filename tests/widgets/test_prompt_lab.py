@@ -3,7 +3,7 @@
 import os
 
 from browser import drawn, open_page
-from jupyter_page import ASK, lab, run_all  # noqa: F401
+from jupyter_page import ASK, run_all
 
 CELL = """import sys; sys.path.insert(0, {tests!r})
 import motiondiff_edu as md
@@ -26,7 +26,7 @@ SILLY = {  # what is typed, and what the box says
 }
 
 
-def test_a_sentence_is_typed_and_acted_in_jupyterlab(browser, lab):  # noqa: F811
+def test_a_sentence_is_typed_and_acted_in_jupyterlab(browser, lab):
     with open_page(browser, offline=False, viewport={"width": 1300, "height": 900}) as page:
         canvas = run_all(page, lab, "mde-player")
         drawn(canvas)

@@ -1,4 +1,4 @@
-"""What departures, recordings and variations are worth for in-betweens: trainings of equal length.
+"""What departures and recordings are worth for in-betweens: trainings of equal length.
 
 Each row differs from another, or from the recipe `inbetweener`, in what its words name. It is
 trained for 2,500 of the recipe's 10,000 steps. `not-shown` trains nothing: it is the shipped dancer
@@ -34,11 +34,7 @@ VARIANTS = {
         {"plain": "plain"},
     ),
     "no-recordings": Variant("no recordings in training", {"recordings": 0}, {"ours": "ours"}),
-    "no-variations": Variant(
-        "no other limbs, pelvises, upper bodies and levels, no stages; other paces for recordings "
-        "alone",
-        {"variations": 0.0, "levels": 0.0, "paces": 0.0, "stages": 0.0}, {"ours": "ours"},
-    ),
+    "cosine": Variant("the cosine schedule as it is", {"snr": 1.0}, {"ours": "ours"}),
     NOT_SHOWN: Variant(
         "a network that is not shown what is given, guided and blended; no recordings either",
         rivals={"no-recordings": "no-recordings"},
