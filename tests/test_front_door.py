@@ -17,9 +17,12 @@ from data_synth.walking import walk
 from motiondiff_edu.editing.masks import body_part
 from motiondiff_edu.editing.plausible import CALMER, DRAWS
 from motiondiff_edu.motion.motion import MotionError, MotionWarning
+from motiondiff_edu.motion.root_frame import FPS
 from motiondiff_edu.motion.skeleton import HIPS, TOES, Skeleton, joint_index
 from motiondiff_edu.performers.inbetweener import Inbetweener
 from motiondiff_edu.pretrained import shipped
+from motiondiff_edu.pretrained.shipped import LEARNT
+from motiondiff_edu.recipes.inbetweener import INBETWEENER
 from motiondiff_edu.widgets import motions as shown
 from motiondiff_edu.widgets.player import Player
 
@@ -434,6 +437,28 @@ def test_frames_that_a_file_lacks_are_filled_in(walked):
         filled = md.inbetween(motion, known, steps=2)
     np.testing.assert_array_equal(filled.positions[known], lost[known])
     assert np.linalg.norm(filled.positions - walked.positions, axis=-1).max() < 0.3
+
+
+def test_the_nearest_frame_takes_the_place_of_a_keyframe_that_a_file_lacks(walked):
+    lost = walked.positions.copy()
+    n = len(lost)
+    lost[:3] = lost[18:26] = lost[n - 2 :] = np.nan
+    lost[40, 5] = np.nan
+    known = md.keyframes(md.Motion(lost), every=20)
+    wanted = [3, 17, *range(40, n - 2, 20), n - 3]
+    assert np.flatnonzero(known.any(1)).tolist() == sorted(set(wanted))
+    assert known[40].tolist() == [joint != 5 for joint in range(21)]
+
+
+def test_keyframes_farther_apart_than_in_the_training_are_told(walked):
+    still = md.Motion(np.repeat(walked.positions[:1], 130, 0))
+    apart = round(LEARNT * FPS)
+    assert apart == INBETWEENER.frames
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", MotionWarning)
+        md.inbetween(still[: apart + 1], md.keyframes(apart + 1, every=apart), steps=2)
+    with pytest.warns(MotionWarning, match="given frames are 6.0 s apart, and the network has le"):
+        md.inbetween(still, md.keyframes(130, every=120), steps=2)
 
 
 def test_play_in_a_notebook_displays_a_player(walked, monkeypatch):

@@ -65,15 +65,20 @@ def keyframes(T: int, every: int) -> Bool[np.ndarray, "{T} J"]:
 def keyframes_of(motion: Motion | int, every: int = 20) -> Bool[np.ndarray, "T J"]:
     """The mask for a keyframe every `every` frames and at the last one: True where it is given.
 
-    Pass a motion, or its number of frames. Joints that a motion lacks (NaN) are not given, and a
-    frame without the pelvis is not given at all: every=1 asks for the lost frames alone.
+    Pass a motion, or its number of frames. Joints that a motion lacks (NaN) are not given. A frame
+    without the pelvis is not given at all, and the nearest that has one takes its place: every=1
+    asks for the lost frames alone.
     Raises ValueError for every < 1, or no frames, TypeError for anything but a motion or a number.
     """
     T = int(motion) if isinstance(motion, Integral) else len(as_motion(motion))
     made = keyframes(checked_count(T, "a motion's number of frames"), checked_count(every, "every"))
     if not isinstance(motion, Motion) or motion.skeleton != COURSE:
         return made
-    return made & motion.known & motion.known[:, [HIPS]]
+    there, wanted = np.flatnonzero(motion.known[:, HIPS]), np.flatnonzero(made.any(1))
+    if not len(there):
+        return np.zeros_like(made)
+    nearest = there[np.abs(there - wanted[:, None]).argmin(1)]
+    return known_frames(T, nearest.tolist()) & motion.known
 
 
 def gap(T: int, first: int, length: int) -> Bool[np.ndarray, "{T} J"]:

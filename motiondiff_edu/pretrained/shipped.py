@@ -28,6 +28,8 @@ from ..performers.walker import Walker
 from . import checkpoints
 from .checkpoints import P
 
+LEARNT = 5.0  # s: the windows of the in-betweener's training
+
 
 def inbetween(
     motion: Motion,
@@ -42,11 +44,12 @@ def inbetween(
 
     Known joints stay exactly where they are. In a frame with a known joint, the pelvis must be
     known too. With `samples` above 1, the result is a list with this many motions.
-    On a motion unlike those of the training a network can fail, and the figure jumps or sinks. If a
-    result moves much faster or lower than the given frames require, or its feet glide, it is drawn
-    again there, and at last nearer to straight lines (`editing.plausible`). A MotionWarning says
-    so, except of a glide that another draw mended. The samples of a smaller number are the first
-    ones of a larger number.
+    On a motion unlike those of the training a network can fail, and the figure jumps, sinks or
+    folds. If a result moves much faster or lower than the given frames require, if its hips or
+    shoulders come together, or its feet glide, it is drawn again there, and what is too fast or too
+    low at last nearer to straight lines (`editing.plausible`). A MotionWarning says so, except of a
+    fold or a glide that another draw mended; and one says where keyframes are farther apart than
+    any in the training. The samples of a smaller number are the first ones of a larger number.
     Raises MotionError or ValueError if motion, mask or numbers do not fit.
     Source: MoFusion 4.4.  Notebook: 15
     """
@@ -55,9 +58,18 @@ def inbetween(
     inbetweener = _shipped(Inbetweener)
     steps = min(checked_count(steps, "steps"), inbetweener.schedule.S)
     if known.all():
-        raise MotionError(f"{motion.name}: every joint is known, so there is nothing to generate")
+        raise MotionError(
+            f"{motion.name}: every joint is known, so there is nothing to generate; give fewer"
+        )
+    words, apart = "", np.diff(np.flatnonzero(known.any(1))).max(initial=0) / FPS
     if not known.any():
         words = "no joint is known, so the result has nothing to do with this motion"
+    elif apart > LEARNT:
+        words = (
+            f"given frames are {apart:.1f} s apart, and the network has learnt from pieces of "
+            f"{LEARNT:g} s: what it makes there has little to do with this motion"
+        )
+    if words:
         warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
 
     def generate(draws: list, remainder: float) -> Float[np.ndarray, "samples T 21 3"]:

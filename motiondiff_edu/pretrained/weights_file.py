@@ -121,7 +121,9 @@ def config_of(metadata: dict[str, str], kinds: Mapping[str, type], default: str)
     unknown = set(values) - set(defaults)
     if unknown:
         what = (
-            "an earlier version: train it again, or download it" if old else "a later one: upgrade"
+            "an earlier version: train it again, or load a shipped one"
+            if old
+            else "a later one: upgrade"
         )
         names = ", ".join(sorted(unknown & old or unknown))
         raise CheckpointError(f"{name} has settings ({names}) of {what}")

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from gaits import rest_pose
 
+from motiondiff_edu.baselines.interpolation import linear
 from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.editing.plausible import (
     AGAIN,
@@ -12,12 +13,14 @@ from motiondiff_edu.editing.plausible import (
     DRAWS,
     SINKS,
     STILL,
+    folded,
     longest_glide,
     lower_than_given,
     parts_of,
     until_plausible,
     wilder_than_given,
 )
+from motiondiff_edu.motion.dance_frame import Place
 from motiondiff_edu.motion.skeleton import JOINTS, TOES
 
 
@@ -78,6 +81,42 @@ def test_a_figure_that_stands_and_moves_glides():
     assert longest_glide(made, KNOWN) == (0, 20)
     made[8:, TOES[1], 1] += 0.2
     assert longest_glide(made, KNOWN) == (0, 0)  # 0.35 s
+
+
+def turned_round(straight: bool) -> np.ndarray:
+    """The rest pose turns by almost a half circle, along straight lines or round its axis."""
+    angles = np.linspace(0.0, 0.95 * np.pi, 41)
+    pose = rest_pose()[None]
+    made = np.stack([Place(np.zeros(3), np.array(angle)).leave(pose)[0] for angle in angles])
+    return linear(made, keyframes(41, 40)) if straight else made
+
+
+def test_a_figure_that_folds_is_told_and_one_that_turns_is_not():
+    turns, folds, known = turned_round(False), turned_round(True), keyframes(41, 40)
+    assert not folded(turns, turns, known).any()
+    found = np.flatnonzero(folded(folds, turns, known))
+    assert found.tolist() == list(range(found[0], found[-1] + 1)) and 20 in found
+    assert 10 < len(found) < 35, "at the ends it is open"
+    assert not folded(folds, folds, np.ones_like(known)).any(), "it was given so"
+    feet = np.zeros_like(known)
+    feet[:, list(TOES)] = True
+    assert not folded(folds, turns, feet).any(), "nobody knows how wide it should be"
+    low = turns.copy()  # the collars alone
+    low[15:18, JOINTS.index("LeftArm")] = low[15:18, JOINTS.index("RightArm")] + 0.05
+    assert np.flatnonzero(folded(low, turns, known)).tolist() == [15, 16, 17]
+
+
+def test_a_fold_is_drawn_again_and_else_told():
+    turns, folds, known, drawn = turned_round(False), turned_round(True), keyframes(41, 40), []
+
+    def again(remainder):
+        drawn.append(remainder)
+        return turns
+
+    made, note = until_plausible(folds, turns, known, again)
+    assert np.array_equal(made, turns) and note == "" and drawn == [1.0]
+    made, note = until_plausible(folds, turns, known, lambda remainder: folds)
+    assert "folds flat near frame 20, and no other of 4 draws was better" in note
 
 
 def test_a_glide_is_drawn_again_until_a_figure_steps():

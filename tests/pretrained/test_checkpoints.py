@@ -387,7 +387,7 @@ NONSENSE = [
         ({"turning": False}, ""),
         (
             {"turning": True},
-            r"settings .turning. of an earlier version: train it again, or download",
+            r"settings .turning. of an earlier version: train it again, or load",
         ),
         ({"wings": 2}, "settings .wings. of a later one: upgrade"),
     ],
