@@ -92,7 +92,8 @@ def turned_round(straight: bool) -> np.ndarray:
 
 
 def test_a_figure_that_folds_is_told_and_one_that_turns_is_not():
-    turns, folds, known = turned_round(False), turned_round(True), keyframes(41, 40)
+    turns, folds = turned_round(False), turned_round(True)
+    known = keyframes(41, 40)
     assert not folded(turns, turns, known).any()
     found = np.flatnonzero(folded(folds, turns, known))
     assert found.tolist() == list(range(found[0], found[-1] + 1)) and 20 in found
@@ -107,7 +108,8 @@ def test_a_figure_that_folds_is_told_and_one_that_turns_is_not():
 
 
 def test_a_fold_is_drawn_again_and_else_told():
-    turns, folds, known, drawn = turned_round(False), turned_round(True), keyframes(41, 40), []
+    turns, folds = turned_round(False), turned_round(True)
+    known, drawn = keyframes(41, 40), []
 
     def again(remainder):
         drawn.append(remainder)
