@@ -12,8 +12,8 @@ would count for nothing.
 So the sizes of remainders differ less, over walks, dances and performed sentences with a keyframe
 a second (`tests/beyond/test_activity.py`). It does not know the ends of a motion: there, and with
 keyframes close to each other, it is up to a tenth smaller.
-Gain: docs/RESULTS.md, *On recordings* (`inbetween-budget.ours.*`): the worst tenth of single in-
-betweens is at least 1.2 times as far off as interpolation, 1.5 without.
+Gain: docs/RESULTS.md, *On recordings* (`inbetween-budget.ours.*`): the worst tenth of single
+in-betweens is at least 1.2 times as far off as interpolation, 1.5 without.
 Ours.
 """
 
