@@ -116,17 +116,17 @@ def config_of(metadata: dict[str, str], kinds: Mapping[str, type], default: str)
             "first (performers.networks.register)"
         )
     defaults: dict[str, Any] = {field.name: field.default for field in fields(kind)}
-    old = {k for k in RETIRED if k in values and k not in defaults}
-    values = {k: v for k, v in values.items() if k not in old or v != RETIRED[k]}
+    values = {
+        k: v for k, v in values.items() if k in defaults or k not in RETIRED or v != RETIRED[k]
+    }
     unknown = set(values) - set(defaults)
     if unknown:
-        what = (
-            "an earlier version: train it again, or load a shipped one"
-            if old
-            else "a later one: upgrade"
+        old = unknown & set(RETIRED)
+        told = "an earlier version: train it again, or load a shipped one"
+        what = told if old else "a later one: upgrade"
+        raise CheckpointError(
+            f"{name} has settings ({', '.join(sorted(old or unknown))}) of {what}"
         )
-        names = ", ".join(sorted(unknown & old or unknown))
-        raise CheckpointError(f"{name} has settings ({names}) of {what}")
     for setting, value in values.items():
         usual = type(defaults[setting])
         fits = type(value) is usual or (type(value) is int and usual is float)  # dropout = 0

@@ -390,6 +390,7 @@ NONSENSE = [
             r"settings .turning. of an earlier version: train it again, or load",
         ),
         ({"wings": 2}, "settings .wings. of a later one: upgrade"),
+        ({"wings": 2, "turning": False}, "settings .wings. of a later one: upgrade"),
     ],
 )
 def test_a_setting_of_another_version(saved: Path, setting: dict, refused: str):
