@@ -29,11 +29,13 @@ $(BIN)/python:
 
 # Installs the course with the extras in $(1) and pip's options in $(2), or says in plain words why it cannot. The full output of pip is in $(VENV)/pip.log.
 NO_NETWORK := NewConnectionError|ConnectTimeoutError|NameResolutionError|Failed to establish|Network is unreachable|from versions: none
+# The pip that comes with an older Python takes twice as long to find the versions. So a newer one comes first, where it can be had.
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
 define install
 @$(BIN)/python -c '$(NEW_ENOUGH)' || { echo "$(VENV) was made with a Python older than 3.11."; \
 	echo "Remove it (rm -rf $(VENV)) and run the same command again."; exit 1; }
 @echo "installing into $(VENV); this happens once and takes a minute or more"
-@$(BIN)/python -m pip install --quiet --disable-pip-version-check $(2) -c constraints.txt -e '.$(1)' >$(VENV)/pip.log 2>&1 || { \
+@{ $(PIP) --retries 0 --upgrade pip; $(PIP) $(2) -e '.$(1)'; } >$(VENV)/pip.log 2>&1 || { \
 	if grep -qE '$(NO_NETWORK)' $(VENV)/pip.log; then \
 		echo "No network: pip could not reach the package index, which it needs for the first installation."; \
 		echo "Connect to the network and run the same command again. The output of pip is in $(VENV)/pip.log"; \
@@ -52,7 +54,7 @@ $(VENV)/.test: pyproject.toml constraints.txt setup.py | $(BIN)/python
 
 $(VENV)/.bench: pyproject.toml constraints.txt setup.py | $(BIN)/python
 	$(call install,[bench])
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt --no-deps $(BARE_PEERS)
+	$(PIP) --no-deps $(BARE_PEERS)
 	@touch $@
 
 # The benchmarks use one module of each of these two peers. Their requirements would bring a torchvision that does not fit a CPU torch.

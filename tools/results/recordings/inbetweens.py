@@ -15,7 +15,7 @@ from jaxtyping import Bool, Float
 from motiondiff_edu.baselines.interpolation import linear, spherical
 from motiondiff_edu.editing.inbetween import clean_samples
 from motiondiff_edu.editing.masks import keyframes
-from motiondiff_edu.editing.plausible import each_until_plausible
+from motiondiff_edu.editing.plausible import each_until_plausible, folded
 from motiondiff_edu.metrics.keyframes import energy_score, unknown_error
 from motiondiff_edu.metrics.walks import skating
 from motiondiff_edu.motion.motion import Motion
@@ -93,6 +93,7 @@ def row_of(one: Filled, truth: Float[np.ndarray, "T J 3"], known: Bool[np.ndarra
             f"{start}skating": sliding(samples[0]) / max(sliding(truth), SKATING_FLOOR),
             f"{start}fastest": fastest(samples[0]) / fastest(truth),
             f"{start}depth": 100 * max(0.0, truth[..., 1].min() - samples[0][..., 1].min()),
+            f"{start}folded": np.mean([folded(made, truth, known).any() for made in samples]),
         }
     return row
 
@@ -117,8 +118,9 @@ def _kinds() -> dict[str, Kind]:
             ("skating_p90_over_source", "skating", high),
             ("fastest_over_source", "fastest", high),
             ("floor_cm", "depth", high),
+            ("folded_share", "folded", np.mean),
         ):
-            unit = "cm" if name.endswith("_cm") else "ratio"
+            unit = {"cm": "cm", "share": "share"}.get(name.rsplit("_")[-1], "ratio")
             found[start + name] = Kind(unit, (raw + row,), value)
     return found | {"inbetween_fallback_share": Kind("share", ("again",), np.mean)}
 
