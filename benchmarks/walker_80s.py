@@ -33,14 +33,7 @@ from motiondiff_edu.motion.augment import mirror  # noqa: E402
 from motiondiff_edu.motion.clip import Clip  # noqa: E402
 from motiondiff_edu.recipes.walker import MEND_CONFIG  # noqa: E402
 from tools.results.walks.scores import score  # noqa: E402
-from tools.results.walks.trials import (  # noqa: E402
-    FPS,
-    SECONDS,
-    T_H,
-    UNSEEN,
-    Trials,
-    walker_generate,
-)
+from tools.results.walks.trials import FPS, SECONDS, T_H, UNSEEN, Trials, walker_generate  # noqa: E402
 
 COMMAND = "python -m benchmarks walker"
 CLIPS = 240

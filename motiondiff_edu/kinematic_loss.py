@@ -163,9 +163,7 @@ def motion_loss(x0_hat: Motion, x0: Motion) -> Float[Tensor, "B"]:
 
 
 def slide_loss(
-    positions: Float[Tensor, "B T J 3"],
-    planted: Bool[Tensor, "B T 2"],
-    toes: tuple[int, int],
+    positions: Float[Tensor, "B T J 3"], planted: Bool[Tensor, "B T 2"], toes: tuple[int, int]
 ) -> Float[Tensor, "B"]:
     """L_f: how far a toe moves along the floor while it should be planted; m.
 

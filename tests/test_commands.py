@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -33,13 +34,21 @@ from motiondiff_edu.pretrained import checkpoints
 ARM = "RightArm,RightForeArm,RightHand"
 
 
-@pytest.fixture
-def folder(tmp_path, monkeypatch, capsys):
-    """A folder with a walk and a song, entered."""
-    monkeypatch.chdir(tmp_path)
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A folder with a walk and a song."""
+    made = tmp_path_factory.mktemp("made")
     control = np.tile([1.0, 0.0, 0.2], (50, 1))
-    md.Motion.of_clip(walk(control, seed=2)).save("my_walk.bvh")
-    soundfile.write("song.wav", compose(3, "pop", seconds=5).audio, 16_000)
+    md.Motion.of_clip(walk(control, seed=2)).save(made / "my_walk.bvh")
+    soundfile.write(made / "song.wav", compose(3, "pop", seconds=5).audio, 16_000)
+    return made
+
+
+@pytest.fixture
+def folder(made, tmp_path, monkeypatch, capsys):
+    """A copy of it, entered."""
+    shutil.copytree(made, tmp_path, dirs_exist_ok=True)
+    monkeypatch.chdir(tmp_path)
     capsys.readouterr()
     return tmp_path
 
@@ -344,10 +353,7 @@ MISTAKES = {
         ["walk", "my_walk.bvh", "--control", "1s 1,2", "--out", "x.bvh"],
         "'1,2' is not a number; write a decimal point (character 4 of the control)",
     ),
-    "no samples": (
-        [*WALK, "--samples", "0"],
-        "--samples must be a whole number of at least 1",
-    ),
+    "no samples": ([*WALK, "--samples", "0"], "--samples must be a whole number of at least 1"),
     "no keyframes": (
         ["inbetween", "my_walk.bvh", "--every", "0", "--out", "x.bvh"],
         "every must be a whole number of at least 1",
@@ -372,10 +378,7 @@ MISTAKES = {
         ["reconstruct", "my_walk.bvh", "--frames", "3-9", "--out", "x.bvh"],
         "--frames needs --missing, which names the joints",
     ),
-    "nothing missing": (
-        ["reconstruct", "my_walk.bvh", "--out", "x.bvh"],
-        "lacks no joint",
-    ),
+    "nothing missing": (["reconstruct", "my_walk.bvh", "--out", "x.bvh"], "lacks no joint"),
     "no page": (["play", "my_walk.bvh", "--out", "x.bvh"], "the page's name must end in .html"),
 }
 
@@ -575,12 +578,12 @@ def test_ctrl_c_ends_with_a_word_and_leaves_no_half_file(folder):
     Both would take a fast machine far longer than it takes to press the keys.
     """
     control = np.tile([1.0, 0.0, 0.2], (1500, 1))
-    md.Motion.of_clip(walk(control, seed=2)).save("long.bvh")
+    md.Motion.of_clip(walk(control, seed=2)).save("long.npz")
     before = sorted(folder.iterdir())
     walking = ["walk", "my_walk.bvh", "--control", "90s 1.2", "--out", "more.bvh"]
     code, said = interrupted(walking, folder, "walking: ")
     assert "stopped" in said and "Traceback" not in said and code != 0
-    code, said = interrupted(["convert", "long.bvh", "film.gif"], folder, "drawing: ")
+    code, said = interrupted(["convert", "long.npz", "film.gif"], folder, "drawing: ")
     assert "stopped" in said and "Traceback" not in said and code != 0
     assert sorted(folder.iterdir()) == before
 

@@ -150,11 +150,7 @@ def documented() -> list[tuple[str, str]]:
 
 def test_names_of_every_folder_are_compared():
     names = {name for name, _ in documented()}
-    assert {
-        "ddpm.q_sample",
-        "metrics.dances.music_alignment",
-        "viz.walks.footstep_curves",
-    } < names
+    assert {"ddpm.q_sample", "metrics.dances.music_alignment", "viz.walks.footstep_curves"} < names
     assert {name.split(".")[0] for name in names} > {"beyond", "performers", "motion", "course"}
 
 

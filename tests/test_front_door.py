@@ -26,17 +26,6 @@ from motiondiff_edu.recipes.inbetweener import INBETWEENER
 from motiondiff_edu.widgets import motions as shown
 from motiondiff_edu.widgets.player import Player
 
-HEAVY = (
-    "torch",
-    "numpy",
-    "scipy",
-    "matplotlib",
-    "ipywidgets",
-    "anywidget",
-    "librosa",
-    "PIL",
-    "tqdm",
-)
 CONTROL = np.tile([1.2, 0.0, 0.0], (20, 1))
 SOUND = compose(3, "house", seconds=2.0).audio
 ARM = ("RightArm", "RightForeArm", "RightHand", "RightHandIndex1")
@@ -483,14 +472,19 @@ def test_films_and_pages_are_written_whole(ending, begins, walked, tmp_path):
 
 def test_importing_it_imports_nothing_heavy():
     code = (
-        "import sys, motiondiff_edu as md; early = {n.split('.')[0] for n in sys.modules}; "
-        "listed = dir(md); md.read_motion; later = {n.split('.')[0] for n in sys.modules}; "
-        "import json; print(json.dumps([sorted(early), listed, sorted(later)]))"
+        "import sys; before = set(sys.modules); import motiondiff_edu as md; "
+        "now = lambda: sorted({n.split('.')[0] for n in set(sys.modules) - before}); "
+        "early, listed = now(), dir(md); md.read_motion; later = now(); "
+        "import torch, motiondiff_edu.conditions.audio_files as _; "
+        "import motiondiff_edu.conditions.music as m; "
+        "m.log_mel(torch.zeros(600), 16_000); heard = now(); "
+        "import json; print(json.dumps([early, listed, later, heard]))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    early, listed, later = json.loads(done.stdout)
-    assert not set(HEAVY) & set(early)
+    early, listed, later, heard = json.loads(done.stdout)
+    assert early == ["motiondiff_edu"]
     assert not {"matplotlib", "ipywidgets", "anywidget", "librosa", "PIL"} & set(later)
+    assert not {"librosa", "numba", "soundfile"} & set(heard), "listening needs none of them"
     assert set(md.__all__) <= set(listed)
 
 

@@ -9,13 +9,7 @@ import torch
 from motiondiff_edu.cross_modal_attention import relative_position_bucket
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.diffusion_dropout import Dropout
-from motiondiff_edu.modiff import (
-    MODIFF_PAPER,
-    MODIFF_SMALL,
-    MoDiff,
-    step_embedding,
-    training_loss,
-)
+from motiondiff_edu.modiff import MODIFF_PAPER, MODIFF_SMALL, MoDiff, step_embedding, training_loss
 
 TINY = replace(MODIFF_SMALL, D=9, T_h=4, T_p=5, S=20, width=16, heads=2, hidden=24)
 B = 3

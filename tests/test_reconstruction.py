@@ -202,10 +202,7 @@ MISTAKES = {
         {"known": lambda x: columns(x, 3)},
         r"known is torch.bool \(3, 6, 3\); give bool, \(3, 6, 8\)",
     ),
-    "a mask of float": (
-        {"known": lambda x: x.float()},
-        r"known is torch.float32 .*; give bool",
-    ),
+    "a mask of float": ({"known": lambda x: x.float()}, r"known is torch.float32 .*; give bool"),
     "columns missing": (
         {"past": lambda x: columns(x, 7), "known": lambda x: columns(x, 7)},
         r"takes \(B, 6, 8\)",

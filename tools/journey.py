@@ -165,6 +165,8 @@ def warmed() -> None:
     for module in pkgutil.walk_packages([str(PACKAGE)], f"{md.__name__}."):
         if not module.name.endswith("__main__"):
             importlib.import_module(module.name)
+    for name in dir(md):  # `md` imports what it shows when it is first asked for
+        getattr(md, name)
     for name in ("walker", "dancer", "inbetweener"):
         md.load(name)
 

@@ -692,11 +692,7 @@ RIGHT = {
         lambda x, g, k, ab, e: x.where(~k, math.sqrt(ab) * g + math.sqrt(1 - ab) * e),
         lambda x, g, k, ab, e: np.where(k, np.sqrt(ab) * g + np.sqrt(1 - ab) * e, x),
     ],
-    "masked": [
-        _masked_by_pairs,
-        _masked_by_index,
-        lambda *given: _masked_by_pairs(*given).numpy(),
-    ],
+    "masked": [_masked_by_pairs, _masked_by_index, lambda *given: _masked_by_pairs(*given).numpy()],
     "way_back": [
         lambda x, now, then, e: math.sqrt(then / now) * x + math.sqrt((now - then) / now) * e,
         lambda x, now, then, e: (then**0.5 * x + (now - then) ** 0.5 * e) / now**0.5,

@@ -148,12 +148,7 @@ def _genre_for(tempo: float, rng: np.random.Generator) -> str:
 
 
 def _form(
-    feel: Feel,
-    genre: str,
-    tempo: float,
-    seconds: float,
-    variety: Variety,
-    rng: np.random.Generator,
+    feel: Feel, genre: str, tempo: float, seconds: float, variety: Variety, rng: np.random.Generator
 ) -> Form:
     """Sections, pauses and the time of every beat."""
     swing = (float(rng.uniform(*feel.swing)), 0.5)

@@ -8,6 +8,7 @@ given entries without a jump. (The pelvis' path has no such bound: seconds after
 frame it is many units away from its line.) A result that fails can be drawn nearer to the lines. If
 nothing is given, the lines are 0 and the scale is 1: the same network samples whole motions.
 `activity` can make the scale smaller for people who hardly move, and larger for lively ones.
+In use, lines go round where a figure turns (`lines_round`). The training has straight ones alone.
 Gain: docs/RESULTS_ALL.md, `inbetween-budget.not-shown.*`: of recordings, a network that is guided
 instead makes one in-between in ten three times as far off as interpolation. On synthetic walks and
 dances there is no gain (`inbetween-departures.not-shown.*`): there that network is the nearer one.
@@ -17,11 +18,15 @@ Source: masks in training after CondMDI (Cohan and others, 2024); lines and scal
 import math
 from dataclasses import dataclass
 
+import numpy as np
 import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
+from ..motion.dance_frame import Place, headings_between
+from ..motion.directions import ARMS, UPLEGS
 from ..motion.known import between_known
+from ..motion.skeleton import J
 
 HALF = 3.0  # frames at 20 frames/s; with it, scales are those of walks, dances and recordings
 
@@ -50,6 +55,31 @@ class GivenLines:
     def whole(self, remainder: Float[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:
         """The motion with this remainder; given entries come back up to rounding."""
         return self.lines + self.less * self.scale * remainder
+
+
+def lines_round(
+    features: Float[Tensor, "T 63"], known: Bool[np.ndarray, "T 21"]
+) -> Float[Tensor, "T 63"]:
+    """Lines through what is given of a motion (`motion.dance_frame`, metres) that turn with it.
+
+    In half a turn between two frames, straight lines pass the figure's axis, and it folds flat. So
+    each frame is seen in the heading that is given or lies evenly between given ones, lines are
+    drawn there, and turned back. The pelvis goes straight. The heading is that of hips or
+    shoulders, whichever are given in more frames; without any, all lines are straight.
+    """
+    columns = torch.from_numpy(known).repeat_interleave(3, dim=-1)[None]
+    straight = between_known(features[None], columns)[0]
+    left, right = max((UPLEGS, ARMS), key=lambda pair: known[:, pair].all(1).sum())
+    there = known[:, left] & known[:, right]
+    if not there.any():
+        return straight
+    joints = features.double().numpy().reshape(-1, 1, J, 3)
+    across = np.where(there[:, None], joints[:, 0, left] - joints[:, 0, right], 0.0)
+    frame = Place(np.zeros((len(joints), 3)), headings_between(across, there))
+    seen = torch.from_numpy(frame.enter(joints)).flatten(1)[None]
+    lines = between_known(seen, columns).unflatten(-1, (1, J, 3))[0]
+    found = torch.from_numpy(frame.leave(lines.numpy())).flatten(1).to(features)
+    return torch.cat([straight[:, :3], found[:, 3:]], -1)
 
 
 def scale_around(known: Bool[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:

@@ -5,7 +5,6 @@ Notebook: 00
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import scipy
@@ -18,16 +17,7 @@ SPACING = 0.01  # metres between the points that a path is resampled to
 # m/s^2, speed times yaw rate: more than this and a runner would have to lean far into the bend
 SIDEWAYS = 2.5
 
-
-@dataclass(frozen=True)
-class Limits:
-    """How fast a walk along a path may change: m/s^2 along it, rad/s about the vertical."""
-
-    acceleration: float | int = 1.2
-    max_yaw: float | int = 1.8
-
-
-CALM = Limits()
+ACCELERATION, MAX_YAW = 1.2, 1.8  # m/s^2 along the path, rad/s about the vertical
 
 
 def path_to_control(
@@ -36,17 +26,13 @@ def path_to_control(
     fps: float | int = FPS,
     stops: Sequence[float | int] = (),
     pause: float | int = 1.5,
-    rest: bool = True,
-    limits: Limits = CALM,
-    smoothing: float | int = 0.12,
 ) -> Float[np.ndarray, "T 3"]:
     """Control that walks along `points` ([x, z], metres) at `speed` m/s.
 
     It starts at the first point with heading 0.
 
-    The path is resampled by arc length and rounded by a Gaussian of `smoothing` metres; speed keeps
-    to the acceleration of `limits` (from and to rest if `rest`) and drops where a bend would need
-    more than their `max_yaw`, or more than SIDEWAYS m/s^2. If the path does not start along z, the
+    The path is rounded (`round_path`); speed keeps to ACCELERATION, from and to rest, and drops
+    where a bend would need more than MAX_YAW or SIDEWAYS. If the path does not start along z, the
     figure first turns on the spot. At each of `stops` (metres along the path) it rests for `pause`
     seconds. The integral of the control is the rounded path.
     Raises ValueError for a path without length, a position that is not finite, or a speed outside
@@ -54,26 +40,20 @@ def path_to_control(
     """
     if not 0 < speed <= 4:
         raise ValueError(f"speed must lie in (0, 4] m/s, got {speed}; the walker knows up to 3")
-    curve = round_path(points, smoothing)
+    curve = round_path(points)
     heading = _headings(curve)
     step = np.linalg.norm(np.diff(curve, axis=0), axis=1)
     where = np.concatenate([[0.0], np.cumsum(step)])
     turn = np.abs(np.diff(heading))
     halts = [int(np.argmin(np.abs(where - s))) for s in stops]
-    v = _speeds(
-        step,
-        turn,
-        float(speed),
-        limits,
-        halts + ([0, len(curve) - 1] if rest else []),
-    )
-    dt = np.maximum(_times(step, v, limits), turn / limits.max_yaw)
+    v = _speeds(step, turn, float(speed), [*halts, 0, len(curve) - 1])
+    dt = np.maximum(_times(step, v), turn / MAX_YAW)
     time = np.concatenate([[0.0], np.cumsum(dt)])
     for halt in halts:  # the pause sits in the step that leaves the halt
         time[halt + 1 :] += pause
     end = time[-1] + pause * (len(curve) - 1 in halts)
     frames = np.arange(int(np.ceil(end * fps)) + 1) / fps
-    return _control_at(frames, time, curve, heading, halts, pause, fps, limits.max_yaw)
+    return _control_at(frames, time, curve, heading, halts, pause, fps)
 
 
 def round_path(
@@ -121,32 +101,23 @@ def _headings(curve: np.ndarray) -> np.ndarray:
     return np.unwrap(np.arctan2(tangent[:, 0], tangent[:, 1]))
 
 
-def _speeds(
-    step: np.ndarray,
-    turn: np.ndarray,
-    speed: float,
-    limits: Limits,
-    halts: list[int],
-) -> np.ndarray:
-    """The fastest speed that is allowed at each point.
-
-    Within `speed`, `limits` and SIDEWAYS, and zero at `halts`.
-    """
+def _speeds(step: np.ndarray, turn: np.ndarray, speed: float, halts: list[int]) -> np.ndarray:
+    """The fastest speed that is allowed at each point; zero at `halts`."""
     bend = np.concatenate([np.minimum(turn / np.maximum(step, 1e-9), 20.0), [0.0]])
     bend = np.maximum(scipy.ndimage.gaussian_filter1d(bend, 0.1 / SPACING, mode="nearest"), 1e-9)
-    v = np.minimum(speed, np.minimum(limits.max_yaw / bend, np.sqrt(SIDEWAYS / bend)))
+    v = np.minimum(speed, np.minimum(MAX_YAW / bend, np.sqrt(SIDEWAYS / bend)))
     v[halts] = 0.0
     v[np.flatnonzero(turn > 0.5)] = 0.0  # half a radian within a centimetre: stop, turn on the spot
     for i in range(1, len(v)):
-        v[i] = min(v[i], np.sqrt(v[i - 1] ** 2 + 2 * limits.acceleration * step[i - 1]))
+        v[i] = min(v[i], np.sqrt(v[i - 1] ** 2 + 2 * ACCELERATION * step[i - 1]))
     for i in range(len(v) - 2, -1, -1):
-        v[i] = min(v[i], np.sqrt(v[i + 1] ** 2 + 2 * limits.acceleration * step[i]))
+        v[i] = min(v[i], np.sqrt(v[i + 1] ** 2 + 2 * ACCELERATION * step[i]))
     return v
 
 
-def _times(step: np.ndarray, v: np.ndarray, limits: Limits) -> np.ndarray:
+def _times(step: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Seconds from each point to the next; between two rests it starts and stops once more."""
-    both, from_rest_to_rest = v[1:] + v[:-1], 2 * np.sqrt(step / limits.acceleration)
+    both, from_rest_to_rest = v[1:] + v[:-1], 2 * np.sqrt(step / ACCELERATION)
     return np.divide(2 * step, both, out=from_rest_to_rest, where=both > 0)
 
 
@@ -158,7 +129,6 @@ def _control_at(
     halts: list[int],
     pause: float | int,
     fps: float | int,
-    max_yaw: float | int,
 ) -> Float[np.ndarray, "T 3"]:
     """Read the timed curve at the frames, turn to it first where needed, and take velocities."""
     knots = np.insert(
@@ -170,7 +140,7 @@ def _control_at(
     clock = time[knots] + leave
     root = np.stack([np.interp(frames, clock, curve[knots, k]) for k in (0, 1)], -1)
     facing = np.interp(frames, clock, heading[knots])
-    first = _turn_on_the_spot(facing[0], fps, max_yaw)
+    first = _turn_on_the_spot(facing[0], fps)
     root = np.concatenate([np.repeat(root[:1], len(first), 0), root])
     facing = scipy.ndimage.gaussian_filter1d(
         np.concatenate([first, facing]), 0.15 * fps, mode="nearest"
@@ -181,15 +151,15 @@ def _control_at(
     return control_from_path(root, facing - facing[0] * remaining, float(fps))
 
 
-def _turn_on_the_spot(angle: float, fps: float | int, max_yaw: float | int) -> np.ndarray:
-    """Headings from 0 to just before `angle`, at `max_yaw` at most.
+def _turn_on_the_spot(angle: float, fps: float | int) -> np.ndarray:
+    """Headings from 0 to just before `angle`, at MAX_YAW at most.
 
     None for a turn of less than three degrees.
     """
     if abs(angle) < np.radians(3):
         return np.zeros(0)
     frames = int(
-        np.ceil(1.5 * abs(angle) / max_yaw * fps)
+        np.ceil(1.5 * abs(angle) / MAX_YAW * fps)
     )  # smoothstep is 1.5 times as steep as a straight line
     return angle * smoothstep(np.arange(frames) / frames)
 

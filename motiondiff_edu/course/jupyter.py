@@ -14,11 +14,7 @@ PATIENCE = 15  # seconds: Jupyter gives its kernels 5 to end by themselves
 
 
 def open_lab(
-    root: Path,
-    notebook: Path,
-    options: list[str],
-    environment: dict[str, str],
-    alone: bool = False,
+    root: Path, notebook: Path, options: list[str], environment: dict[str, str], alone: bool = False
 ) -> int:
     """Start JupyterLab in `root` with `notebook` open; returns its exit status.
 

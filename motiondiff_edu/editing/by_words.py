@@ -63,7 +63,10 @@ def edit_by_words(
     positions, mask = checked_given(positions, nothing if known is None else known)
     if not np.isfinite(positions).all():
         raise ValueError("positions contain NaN or infinity: fill or cut these frames first")
-    ways = edit_steps(mover.schedule.S, STEPS, strength)
+    every = timesteps(mover.schedule.S, min(STEPS, mover.schedule.S))
+    # those of DDIM up to this share of S; the last one at least
+    share = checked_strength(strength) * mover.schedule.S
+    ways = [s for s in every if s <= round(share)] or every[-1:]
     texts = mover.reader.encoded([mover.reader.read(text).words] * samples)
     generator = generator or torch.Generator().manual_seed(0)
     size = leg_size(positions)  # the mover knows figures of the course's size
@@ -115,16 +118,6 @@ def kept_columns(known: Bool[np.ndarray, "T 21"]) -> Bool[Tensor, "T 22"]:
     """The columns of a timeline to keep: of the legs, or of the arms, where they are known."""
     legs, arms = (torch.from_numpy(known[:, list(part)].all(1)) for part in (FEET, HANDS))
     return torch.where(timeline.of_the_legs(), legs[:, None], arms[:, None])
-
-
-def edit_steps(S: int, steps: int, strength: float) -> list[int]:
-    """The diffusion steps of an edit: those of DDIM up to `strength` S; the last one at least.
-
-    Raises ValueError for a strength that is not above 0 and at most 1.
-    """
-    strength = checked_strength(strength)
-    every = timesteps(S, min(steps, S))
-    return [s for s in every if s <= round(strength * S)] or every[-1:]
 
 
 def columns(known: Bool[Tensor, "T 21"]) -> Bool[Tensor, "T 66"]:

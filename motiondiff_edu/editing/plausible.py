@@ -2,8 +2,8 @@
 
 On motions unlike its training a network can fail badly: the figure jumps by metres between
 keyframes that are close together, or sinks into the floor. Where it turns between two keyframes, it
-can fold, as straight lines do: its hips or shoulders come together. And a walk can lose its steps:
-then the figure glides, standing, from keyframe to keyframe.
+can fold: its hips or shoulders come together. And a walk can lose its steps: then the figure
+glides, standing, from keyframe to keyframe.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -37,7 +37,7 @@ FOLDED = 0.7
 SINKS = 0.4
 
 AGAIN = "So it was generated again there. Check the result"
-CALMED = "So it was generated again there, nearer to straight lines. Check the result"
+CALMED = "So it was generated again there, nearer to the lines between keyframes. Check the result"
 STILL = "Other draws are no better: give more keyframes, or draw straight lines between them"
 DRAWS = (
     4  # of a sample that is not plausible, before its remainder around the lines is made smaller
@@ -83,7 +83,7 @@ def until_plausible(
 
     `again(remainder)` draws another one (`Inbetweener.fill`). It is called with 1, up to DRAWS - 1
     times. What is still too fast or too low is drawn with smaller and smaller remainders around
-    straight lines.
+    the lines between what is given.
     Between two frames that are given whole, the best draw is taken. Nothing is said of a fold or a
     glide that another draw mended.
     """

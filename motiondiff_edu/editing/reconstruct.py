@@ -19,7 +19,7 @@ from .. import reconstruction
 from ..beyond.back_with_known import FADE, blended_way_back
 from ..beyond.guidance import blended_guess
 from ..motion.cleanup import Body, clean_bones, clean_up, runs
-from ..motion.dance_frame import heading
+from ..motion.dance_frame import headings_between
 from ..motion.directions import ARMS, UPLEGS
 from ..motion.motion import MotionError, MotionWarning
 from ..motion.root_frame import FPS, smoothed_root, to_root_frame, to_world
@@ -192,6 +192,5 @@ def path_of(
         raise MotionError(
             "the direction of the figure is unknown: no frame has both hips or both shoulders"
         )
-    seen = np.flatnonzero(has_direction)
-    facing = np.interp(np.arange(len(known)), seen, np.unwrap(heading(across[seen])))
+    facing = headings_between(across, has_direction)
     return smoothed_root(positions[:, HIPS][:, [0, 2]], facing)

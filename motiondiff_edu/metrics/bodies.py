@@ -179,44 +179,22 @@ def autocorrelation(x: Float[np.ndarray, "T F"], lag: int) -> float:
     return float((a * b).sum() / np.sqrt(max((a**2).sum() * (b**2).sum(), 1e-24)))
 
 
-def lag_similarity(
-    positions: Float[np.ndarray, "T 21 3"], fps: float | int = FPS
-) -> Float[np.ndarray, "L"]:
-    """The `autocorrelation` of the dance for lag = 0, 1, ... while 2 s are left to compare.
-
-    Raises ValueError for a clip under 2 s, NaN, and a figure that keeps one pose.
-    """
-    return _similar(positions, fps, slice(None))
-
-
-def _similar(positions: np.ndarray, fps: float | int, lags: slice) -> Float[np.ndarray, "L"]:
-    """`lag_similarity` for some of the lags."""
-    x = _moving(pose_changes(positions))
-    overlap = round(OVERLAP * fps)
-    if len(x) < overlap:
-        raise ValueError(
-            f"{len(x) / fps:g} s are too short to look for repetition: {OVERLAP:g} s are needed"
-        )
-    return np.array([autocorrelation(x, lag) for lag in range(len(x) - overlap + 1)[lags]])
-
-
-def repeat_score(
-    positions: Float[np.ndarray, "T 21 3"], fps: float | int = FPS, lags: tuple[float, float] = LAGS
-) -> float:
-    """The largest `lag_similarity` between 1 and 8 seconds: 1 for a loop, near 0 for noise.
+def repeat_score(positions: Float[np.ndarray, "T 21 3"], fps: float | int = FPS) -> float:
+    """The largest `autocorrelation` at 1 to 8 seconds: 1 for a loop, near 0 for noise.
 
     A clip of T seconds shows lags up to T - 2 s, so compare only clips of one length. Smooth
     movement without repetition is still a little similar to itself by chance.
-    Raises ValueError as `lag_similarity` does, and when no such lag fits.   Notebook: 14
+    Raises ValueError for a clip under 3 s, NaN, and a figure that keeps one pose.   Notebook: 14
     """
-    first, last = round(lags[0] * fps), round(lags[1] * fps)
-    similarity = _similar(positions, fps, slice(first, last + 1))
-    if not len(similarity):
+    x = _moving(pose_changes(positions))
+    first, last = (round(lag * fps) for lag in LAGS)
+    lags = range(first, min(last, len(x) - round(OVERLAP * fps)) + 1)
+    if not lags:
         raise ValueError(
-            f"{len(positions) / fps:g} s are too short for a lag of {lags[0]:g} s "
+            f"{len(positions) / fps:g} s are too short for a lag of {LAGS[0]:g} s "
             f"with {OVERLAP:g} s to compare"
         )
-    return float(similarity.max())
+    return max(autocorrelation(x, lag) for lag in lags)
 
 
 def _moving(x: Float[np.ndarray, "T F"]) -> Float[np.ndarray, "T F"]:
@@ -357,9 +335,7 @@ def trunk_lean(positions: Float[np.ndarray, "T 21 3"]) -> float:
 
 
 def accents(
-    positions: Float[np.ndarray, "T 21 3"],
-    beats: Float[np.ndarray, "K"],
-    fps: float | int = FPS,
+    positions: Float[np.ndarray, "T 21 3"], beats: Float[np.ndarray, "K"], fps: float | int = FPS
 ) -> float:
     """How much the strength of a dance's movement differs from beat to beat.
 
@@ -376,9 +352,7 @@ def accents(
 
 
 def tick_at_keyframes(
-    positions: Float[np.ndarray, "T 21 3"],
-    keyframes: Bool[np.ndarray, "T"],
-    fps: float | int = FPS,
+    positions: Float[np.ndarray, "T 21 3"], keyframes: Bool[np.ndarray, "T"], fps: float | int = FPS
 ) -> float:
     """How much stronger joints are accelerated at keyframes than elsewhere: their ratio.
 

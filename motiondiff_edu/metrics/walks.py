@@ -346,9 +346,7 @@ def gait_style(
 
 
 def style_kept(
-    pasts: Float[np.ndarray, "N 4"],
-    made: Float[np.ndarray, "N 4"],
-    persons: Sequence[str],
+    pasts: Float[np.ndarray, "N 4"], made: Float[np.ndarray, "N 4"], persons: Sequence[str]
 ) -> Float[np.ndarray, "N"]:
     """For each continuation the share of other persons' pasts that are farther away than its own.
 

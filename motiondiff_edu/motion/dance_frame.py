@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import torch
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 from torch import Tensor
 
 from ..kinematic_loss import Body
@@ -30,6 +30,18 @@ def facing(positions: Float[np.ndarray, "*B 21 3"]) -> Float[np.ndarray, "*B"]:
 def heading(across: Float[np.ndarray, "*B 3"]) -> Float[np.ndarray, "*B"]:
     """The direction that a figure faces, from the line of its hips or shoulders, right to left."""
     return np.asarray(np.arctan2(-across[..., 2], across[..., 0]))
+
+
+def headings_between(
+    across: Float[np.ndarray, "T 3"], there: Bool[np.ndarray, " T"]
+) -> Float[np.ndarray, " T"]:
+    """The heading in every frame (radians), from these lines where they are `there`, and evenly
+    between.
+
+    It goes the short way round, and stays before the first and after the last. One must be there.
+    """
+    frames = np.arange(len(across))
+    return np.interp(frames, frames[there], np.unwrap(heading(across[there])))
 
 
 @dataclass(frozen=True, eq=False)

@@ -98,9 +98,8 @@ def complete(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 21 3"]
 
 def has_our_bones(points: Float[np.ndarray, "T 21 3"]) -> bool:
     """True when every bone has the course's length within 2 %, as in the course's own files."""
-    lengths = np.array(
-        [np.median(np.linalg.norm(points[:, c] - points[:, p], axis=-1)) for p, c in BONES]
-    )
+    bones = np.linalg.norm(points[:, 1:] - points[:, PARENTS[1:]], axis=-1)
+    lengths = np.median(bones, axis=0)
     return bool(np.all(np.abs(lengths / BONE_LENGTHS - 1) < 0.02))
 
 

@@ -300,9 +300,14 @@ class Motion:
         for a recording; TypeError for what is no path.  Notebook: 00
         """
         path = checked_path(path)
-        write = registry.writers.get(check_ending(path))
+        ending = path.suffix.lower()
+        write = registry.writers.get(ending)
+        if write is None:
+            there = " ".join(registry.writers.names())
+            what = f"unknown ending {ending}" if ending else "the name has no ending"
+            raise MotionError(f"{path.name}: {what}; use one of {there}")
         with recordings.writing(path, overwrite):
-            write(self, path)  # type: ignore[misc]  # check_ending knows the endings with a writer
+            write(self, path)
         return path
 
     def __repr__(self) -> str:
@@ -343,16 +348,6 @@ def checked_path(path: str | Path) -> Path:
     if path.is_dir():
         raise MotionError(f"{path} is a folder; give the name of a file in it")
     return path
-
-
-def check_ending(path: str | Path) -> str:
-    """The ending that says how to save.  Raises MotionError for an unknown one."""
-    ending = Path(path).suffix.lower()
-    if registry.writers.get(ending) is None:
-        there = " ".join(registry.writers.names())
-        what = f"unknown ending {ending}" if ending else "the name has no ending"
-        raise MotionError(f"{Path(path).name}: {what}; use one of {there}")
-    return ending
 
 
 def _real(values, dtype: type) -> np.ndarray:

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 import numpy as np
 from jaxtyping import Float
 
-from .directions import has_our_bones
+from .directions import UP, has_our_bones, rotation_between, unit
 from .formats.bvh import Bvh
 from .formats.bvh.tokens import BvhError
 from .motion import MotionWarning
@@ -49,9 +49,9 @@ def to_metres(
     Raises BvhError for a figure without legs.
     Source: the height of the course's figure, 1.70 m.
     """
-    for unit in (0.01, 1.0):
-        if has_our_bones(unit * points):
-            return unit * points, unit
+    for size in (0.01, 1.0):
+        if has_our_bones(size * points):
+            return size * points, size
     length = leg_length(points)
     if not length > 1e-9:
         raise BvhError(
@@ -163,18 +163,11 @@ def level(
     points: Float[np.ndarray, "T 21 3"], plane: Float[np.ndarray, "3"]
 ) -> Float[np.ndarray, "T 21 3"]:
     """Turn and shift everything so that the plane becomes y = 0."""
-    normal = np.array([-plane[1], 1.0, -plane[2]])
-    normal /= np.linalg.norm(normal)
-    across = np.cross(normal, [0.0, 1.0, 0.0])
-    cosine = normal[1]
-    cross = np.array(
-        [[0, -across[2], across[1]], [across[2], 0, -across[0]], [-across[1], across[0], 0]]
-    )
-    turn = np.eye(3) + cross + cross @ cross / (1 + cosine)
-    return (points - np.array([0.0, plane[0], 0.0])) @ turn.T
+    normal = unit(np.array([-plane[1], 1.0, -plane[2]]))
+    return (points - np.array([0.0, plane[0], 0.0])) @ rotation_between(normal, UP).T
 
 
-def warn(message: str, source: str) -> str:
-    """Issue a MotionWarning, and return the message for the clip's notes."""
+def warn(message: str, source: str, notes: list[str]) -> None:
+    """Issue a MotionWarning, and add the message to the clip's notes."""
     warnings.warn(f"{source}: {message}", MotionWarning, stacklevel=2)
-    return message
+    notes.append(message)

@@ -4,7 +4,8 @@ import numpy as np
 import scipy
 from jaxtyping import Bool, Float
 
-from .cleanup import runs
+from .cleanup import between_anchors, runs
+from .dance_frame import GROUND
 from .directions import unit
 from .inverse_kinematics import pelvis_ahead, perpendicular, triangle
 from .normalise import speed
@@ -35,23 +36,12 @@ def shift_to_pins(
 ) -> Float[np.ndarray, "T 3"]:
     """The shift that keeps a toe on one point of the floor during each contact.
 
-    Between two contacts the shift is interpolated smoothly (3u^2 - 2u^3). Before the first and
-    after the last contact it is constant.
+    Between two contacts it changes smoothly. Before the first and after the last it is constant.
     """
     shift = np.zeros_like(toe)
-    pinned = runs(contact).tolist()
-    for first, last in pinned:
-        pin = np.median(toe[first:last], axis=0) * np.array([1.0, 0.0, 1.0])
-        shift[first:last] = pin - toe[first:last]
-    if not pinned:
-        return shift
-    shift[: pinned[0][0]], shift[pinned[-1][1] :] = shift[pinned[0][0]], shift[pinned[-1][1] - 1]
-    for (_, left), (right, _) in zip(pinned[:-1], pinned[1:], strict=True):
-        u = (np.arange(left, right) - (left - 1))[:, None] / (right - left + 1)
-        shift[left:right] = shift[left - 1] + (shift[right] - shift[left - 1]) * (
-            3 * u**2 - 2 * u**3
-        )
-    return shift
+    for first, last in runs(contact).tolist():
+        shift[first:last] = np.median(toe[first:last], axis=0) * GROUND - toe[first:last]
+    return between_anchors(shift, contact)
 
 
 def plant(

@@ -41,7 +41,7 @@ from .normalise import (
 )
 from .planting import find_contacts, flat_feet, plant
 from .resample import resample_present
-from .root_frame import estimate_root, to_root_frame
+from .root_frame import FPS, estimate_root, to_root_frame
 from .skeleton import HEELS, HIPS, JOINTS, PARENTS, TOES
 
 SHORTEST = 0.5  # s; a shorter clip shows no gait and no heading
@@ -80,8 +80,8 @@ def load_clip(
     return retarget(read_bvh(path, file_fps), mapping)
 
 
-def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None, fps: float | int = 20.0) -> Clip:
-    """A motion with the course's 21 joints and bones, `fps` frames/s, in metres, with floor 0.
+def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None) -> Clip:
+    """A motion with the course's 21 joints and bones, 20 frames/s, in metres, with floor 0.
 
     The bones keep the directions of the file, and planted toes stay still. `clip.info` records the
     units, the corrections and the mapping.
@@ -92,37 +92,25 @@ def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None, fps: float | in
     figure = Figure(
         pick(points, bvh, mapping), bvh.fps, pick(rest, bvh, mapping)[0], source=bvh.source
     )
-    return retarget_figure(figure, fps, {"mapping": dict(mapping)})
+    return retarget_figure(figure, {"mapping": dict(mapping)})
 
 
-def retarget_figure(figure: Figure, fps: float | int = 20.0, info: dict | None = None) -> Clip:
+def retarget_figure(figure: Figure, info: dict | None = None) -> Clip:
     """A figure with the course's bones, as `retarget`; its `info` is added to `info`.
 
     Raises BvhError for a motion that is shorter than half a second.
     """
-    fps = float(fps)
-    if not 0 < fps < np.inf:
-        raise BvhError(
-            f"fps must be a positive number of frames a second, not {fps:g}.", figure.source
-        )
-    points, found = normalise_figure(figure, fps)
-    world, contacts = onto_our_bones(points, found["rest_lean"], fps)
-    warn_sunk(world, fps, figure.source, found["notes"])
-    root, heading = estimate_root(world, fps)
-    poses, control = to_root_frame(world, root, heading, fps)
-    found |= {"start": (*root[0].tolist(), float(heading[0]))}
-    return Clip(
-        poses,
-        control,
-        fps=fps,
-        contacts=contacts,
-        source=figure.source,
-        info=found | (info or {}),
-    )
+    points, found = normalise_figure(figure)
+    world, contacts = onto_our_bones(points, found["rest_lean"], FPS)
+    warn_sunk(world, FPS, figure.source, found["notes"])
+    root, heading = estimate_root(world, FPS)
+    poses, control = to_root_frame(world, root, heading, FPS)
+    found |= {"start": (*root[0].tolist(), float(heading[0]))} | (info or {})
+    return Clip(poses, control, contacts=contacts, source=figure.source, info=found)
 
 
-def normalise_figure(figure: Figure, fps: float) -> tuple[Float[np.ndarray, "T 21 3"], dict]:
-    """The figure in metres, y up, at `fps`, on a level floor; and a record of the corrections."""
+def normalise_figure(figure: Figure) -> tuple[Float[np.ndarray, "T 21 3"], dict]:
+    """The figure in metres, y up, 20 frames/s, on a level floor; and a record of corrections."""
     points, rest = figure.points, figure.rest
     notes: list[str] = []
     up = figure.up or up_axis(points, rest)
@@ -135,25 +123,21 @@ def normalise_figure(figure: Figure, fps: float) -> tuple[Float[np.ndarray, "T 2
         # a mirrored rest pose would have hips that face backwards
         lean = rest_lean(rest * FLIP_X if mirrored else rest)
     if mirrored:
-        notes.append(
-            warn(
-                "left and right were exchanged in the file; the figure was mirrored", figure.source
-            )
-        )
+        exchanged = "left and right were exchanged in the file; the figure was mirrored"
+        warn(exchanged, figure.source, notes)
     dropped = calibration_frames(points)
     if dropped:
         which = "frame 0 is" if dropped == 1 else f"frames 0 to {dropped - 1} are"
-        notes.append(
-            warn(f"{which} a calibration pose, not part of the motion; dropped", figure.source)
-        )
+        what = f"{which} a calibration pose, not part of the motion; dropped"
+        warn(what, figure.source, notes)
     points = complete(points[dropped:])
     refuse_short(len(points), figure)
     speeds = speed(points, figure.fps)
     warn_wild(speeds, figure, dropped, notes)
-    points = resample_present(points, figure.fps, fps)
-    wild = wild_joints(speeds, figure.fps, len(points), fps)
+    points = resample_present(points, figure.fps, FPS)
+    wild = wild_joints(speeds, figure.fps, len(points), FPS)
     ours = has_our_bones(points)
-    plane = np.zeros(3) if ours else floor_plane(ground_points(points), fps)
+    plane = np.zeros(3) if ours else floor_plane(ground_points(points), FPS)
     info = dict(
         file_fps=figure.fps,
         unit_m=unit,
@@ -208,12 +192,8 @@ def warn_sunk(
     t, joint = np.unravel_index(world[..., 1].argmin(), world.shape[:2])
     if world[t, joint, 1] < SUNK:
         depth, when = -100 * world[t, joint, 1], t / fps
-        notes.append(
-            warn(
-                f"{JOINTS[joint]} is {depth:.0f} cm under the floor {when:.2f} s into the clip",
-                source,
-            )
-        )
+        deep = f"{JOINTS[joint]} is {depth:.0f} cm under the floor {when:.2f} s into the clip"
+        warn(deep, source, notes)
 
 
 def refuse_short(count: int, figure: Figure) -> None:
@@ -236,9 +216,5 @@ def warn_wild(
     wild = np.flatnonzero(np.nanmax(speeds, axis=1) > WILD)
     if len(wild):
         where = f"frames {wild[0] + dropped} to {wild[-1] + dropped}"
-        notes.append(
-            warn(
-                f"a joint moves faster than {WILD:g} m/s within {where}: a fault of the capture?",
-                figure.source,
-            )
-        )
+        fast = f"a joint moves faster than {WILD:g} m/s within {where}: a fault of the capture?"
+        warn(fast, figure.source, notes)

@@ -71,13 +71,6 @@ BONE_PAIRS: tuple[tuple[int, int], ...] = tuple(
 )
 
 
-def joint_index(name: str) -> int:
-    """The index of a joint by its name.  Raises KeyError with a list of all names."""
-    if name not in JOINTS:
-        raise KeyError(f"no joint is called {name!r}; the skeleton has {', '.join(JOINTS)}")
-    return JOINTS.index(name)
-
-
 def check_joints(positions: np.ndarray) -> None:
     """Raise ValueError unless the last two axes are the course's joints and their coordinates."""
     if positions.shape[-2:] != (J, 3):
@@ -129,3 +122,4 @@ class Skeleton:
 
 
 COURSE = Skeleton(JOINTS, tuple(PARENTS.tolist()))  # the one skeleton of the course's networks
+joint_index = COURSE.index

@@ -79,10 +79,7 @@ class Dancer(Performer):
         return mel, frame_times(mel.shape[1]).float().to(self.device)
 
     def denoiser(
-        self,
-        mel: Float[Tensor, "B M C"] | None,
-        frames: int,
-        guidance: float = 1.0,
+        self, mel: Float[Tensor, "B M C"] | None, frames: int, guidance: float = 1.0
     ) -> Denoiser:
         """`denoise(x_s, s) -> eps_hat` for this music (None for a network without music).
 

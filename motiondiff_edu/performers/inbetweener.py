@@ -1,6 +1,6 @@
 """An in-betweener: a network that is shown what is known of a motion, and fills in the rest.
 
-    known entries -> straight lines through them -> remainder around the lines, by diffusion
+    known entries -> lines through them -> remainder around the lines, by diffusion
 The network is MoFusion's U-Net. Beside the noised remainder it sees the lines, how far a motion
 usually is from them, and the mask; so it was trained with masks. It predicts v: at low noise x0_hat
 is x_s with little changed, and details that a small network would smooth away stay.
@@ -11,7 +11,7 @@ Notebook: 15
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 import torch
@@ -19,7 +19,7 @@ from jaxtyping import Bool, Float, Int
 from torch import Tensor, nn
 
 from ..beyond.activity import USED_AT_MOST, with_activity
-from ..beyond.around_lines import GivenLines
+from ..beyond.around_lines import GivenLines, lines_round
 from ..ddpm import Denoiser, Generators, draw, final
 from ..inbetweening import inpaint_steps
 from ..mofusion import MoFusion, MoFusionConfig
@@ -128,6 +128,8 @@ class Inbetweener(Performer):
         columns = columns.to(device).expand(samples, -1, -1)
         r_S = draw(given, generator)
         lines = self.model.lines(given, columns, activity_at_most=USED_AT_MOST)
+        round_ = self.motion_scaler.transform(lines_round(features, known).to(device))
+        lines = replace(lines, lines=round_.where(columns.any(1, keepdim=True), 0.0))
         known_remainder = torch.zeros_like(given)
         loop = inpaint_steps(
             self.denoiser(lines), r_S, self.schedule, known_remainder, columns, steps=steps,

@@ -22,13 +22,7 @@ from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 from ..motion.skeleton import J
 from ..rollout import WindowSampler
-from .continuation import (
-    Start,
-    finish_continuation,
-    in_words,
-    resize_motion,
-    unlike_training,
-)
+from .continuation import Start, finish_continuation, in_words, resize_motion, unlike_training
 from .networks import WalkerConfig, WalkerNetwork, register
 from .performer import STEPS, Performer, bar, evaluating, generators
 

@@ -17,10 +17,7 @@ import torch
 from safetensors import safe_open
 from torch import Tensor, nn
 
-from ..baselines import (  # noqa: F401  they register their networks
-    text,
-    transformer,
-)
+from ..baselines import text, transformer  # noqa: F401  they register their networks
 from ..conditions.clip import ClipError, ClipModel
 from ..conditions.clip import load as load_clip
 from ..ddpm import make_schedule
@@ -43,14 +40,7 @@ from .weights_file import (
     write_weights,
 )
 
-__all__ = [
-    "CheckpointError",
-    "available",
-    "load",
-    "load_dancer",
-    "load_walker",
-    "save",
-]
+__all__ = ["CheckpointError", "available", "load", "save"]
 
 FOLDER = Path(__file__).parent
 AnyPerformer = Walker | Dancer | Mover | Inbetweener
@@ -117,11 +107,7 @@ def save(figure: AnyPerformer, path: str | Path, bits: int = 16) -> Path:
         for part in ("mean", "std")
     }
     tensors["schedule.beta"] = figure.schedule.beta[1:]
-    settings = {
-        "format": kind.format,
-        "network": network,
-        "schedule": figure.schedule.name,
-    }
+    settings = {"format": kind.format, "network": network, "schedule": figure.schedule.name}
     return write_weights(path, tensors, settings, asdict(figure.config), figure.card)
 
 
@@ -146,7 +132,7 @@ def load(name: str | Path, clip: ClipModel | str | Path | None = None) -> AnyPer
     """
     path = Path(str(name))
     if path.suffix or path.parent.name:
-        return _read(path, *KINDS, clip=clip)
+        return _read(path, clip)
     files, name = available(), str(name)
     if name not in files:
         there = ", ".join(files) or "none (run make pretrained)"
@@ -159,21 +145,10 @@ def load(name: str | Path, clip: ClipModel | str | Path | None = None) -> AnyPer
     return copy.deepcopy(_kept(path, path.stat().st_mtime_ns))
 
 
-def load_walker(path: str | Path) -> Walker:
-    """Read a walker.  Raises CheckpointError as `load`, and for a dancer."""
-    return _read(path, WALKER)
-
-
-def load_dancer(path: str | Path) -> Dancer:
-    """Read a dancer, or a baseline that dances.  Raises CheckpointError as `load`, and for a
-    walker."""
-    return _read(path, DANCER)
-
-
-def _read(path: str | Path, *kinds: Kind[P], clip: ClipModel | str | Path | None = None) -> P:
+def _read(path: str | Path, clip: ClipModel | str | Path | None = None) -> AnyPerformer:
     shipped = Path(path).parent == FOLDER
     assembled = {kind.format: partial(_assembled, kind, clip=clip, shipped=shipped)
-                 for kind in kinds}  # fmt: skip
+                 for kind in KINDS}  # fmt: skip
     return read_weights(path, assembled)
 
 
@@ -255,4 +230,4 @@ def available() -> dict[str, Path]:
 @lru_cache(maxsize=8)
 def _kept(path: Path, changed: int) -> AnyPerformer:
     """Shipped weights are read and checked once; nobody gets this object, only copies of it."""
-    return _read(path, *KINDS)
+    return _read(path)

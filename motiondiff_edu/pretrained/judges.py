@@ -20,14 +20,7 @@ from ..conditions.word_encoder import FIRST, ids_of
 from ..metrics.distributions import Space
 from ..motion.moving_frame import D, to_features
 from ..motion.scaler import Scaler
-from .checkpoints import (
-    FOLDER,
-    card_of,
-    refuse_other_shapes,
-    scaler_of,
-    weights_of,
-    with_weights,
-)
+from .checkpoints import FOLDER, card_of, refuse_other_shapes, scaler_of, weights_of, with_weights
 from .weights_file import LARGEST, check_sizes, pack, read_weights, write_weights
 
 FORMAT = "motiondiff_edu judge 1"

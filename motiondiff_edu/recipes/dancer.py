@@ -84,10 +84,7 @@ REGRESSED = replace(
 FULL = replace(HEARING, widths=MOFUSION_FULL.widths, heads=MOFUSION_FULL.heads)
 DANCER_FULL = replace(DANCER, name="dancer-full", config=FULL, steps=200_000, batch=64)
 UNCONDITIONAL = DanceRecipe(
-    "unconditional",
-    replace(MOFUSION_SMALL, target="x0", skip=False, C=0),
-    steps=6000,
-    songs=3000,
+    "unconditional", replace(MOFUSION_SMALL, target="x0", skip=False, C=0), steps=6000, songs=3000
 )
 
 SHIPPED_DANCERS = (DANCER, DANCER_PLAIN, REGRESSED, UNCONDITIONAL)

@@ -234,10 +234,7 @@ def train_planner(
     step of both. Its run lies beside `run_file`.
     """
     alone = replace(
-        recipe,
-        name=f"{recipe.name}-planner",
-        config=model.planner.config,
-        steps=recipe.plan_steps,
+        recipe, name=f"{recipe.name}-planner", config=model.planner.config, steps=recipe.plan_steps
     )
     begins = {"begins_with": digest_of_tensors(model.planner.state_dict())[:16]}
     own = replace(provenance, about=provenance.about | begins)

@@ -115,13 +115,7 @@ def on_device(model: nn.Module, device: str | None) -> nn.Module:
 
 
 def run_to_end(
-    recipe: Recipe,
-    rate,
-    state: TrainState,
-    loss_fn: LossFn,
-    save,
-    log,
-    before=None,
+    recipe: Recipe, rate, state: TrainState, loss_fn: LossFn, save, log, before=None
 ) -> None:
     """Train to the last step, with a line of log every LOG_EVERY seconds, and at the end."""
     losses, logged = [], state.seconds

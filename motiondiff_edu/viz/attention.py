@@ -72,14 +72,7 @@ def _paint(axis: Axes, weights: np.ndarray, groups: Groups | None, top: float):
     for name, count in groups or []:
         if first:
             axis.axvline(first - 0.5, color=INK, lw=1.2)
-        axis.text(
-            first + count / 2 - 0.5,
-            -0.75,
-            name,
-            ha="center",
-            va="bottom",
-            fontsize=SMALL,
-        )
+        axis.text(first + count / 2 - 0.5, -0.75, name, ha="center", va="bottom", fontsize=SMALL)
         first += count
     return image
 

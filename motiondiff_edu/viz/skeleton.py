@@ -1,4 +1,4 @@
-"""Plots of skeletons: a strip of poses, several motions side by side, a path with footprints.
+"""Plots of skeletons: a strip of poses, several motions side by side, a path on the floor.
 
 Positions are world positions in metres, (T, 21, 3), y up.  Notebook: 01
 """
@@ -6,13 +6,12 @@ Positions are world positions in metres, (T, 21, 3), y up.  Notebook: 01
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Polygon
 
-from ..metrics.walks import runs
-from ..motion.skeleton import HEELS, HIPS, TOES
+from ..motion.skeleton import HIPS
 from . import body
 from .style import LARGE, MEDIUM, OKABE_ITO, SMALL, figure, legend
 
@@ -133,49 +132,17 @@ def draw_pose(
     axis.set_axis_off()
 
 
-def top_view(
-    positions: Float[np.ndarray, "T 21 3"] | None = None,
-    contacts: Bool[np.ndarray, "T 2"] | None = None,
-    paths: Mapping[str, Float[np.ndarray, "_ 2"]] | None = None,
-    title: str = "",
-) -> Figure:
-    """The floor from above, x to the left: the path of the hips, footprints, and given paths.
-
-    Paths are [x, z].
-    """
+def top_view(path: Float[np.ndarray, "_ 2"]) -> Figure:
+    """The floor from above, x to the left, with a path of points [x, z]."""
     words = "The floor from above; a square is one metre wide, and the arrow marks the start."
-    fig, (axis,) = figure(
-        6.2, 6.2, words if positions is None else words + " Footprints: left blue, right orange."
-    )
-    styles = zip(("-", "--", ":"), (OKABE_ITO[2], OKABE_ITO[4], OKABE_ITO[3]), strict=True)
-    for (name, path), (dash, colour) in zip((paths or {}).items(), list(styles) * 3, strict=False):
-        axis.plot(path[:, 0], path[:, 1], dash, color=colour, lw=3, label=name)
-    start = np.zeros(2)
-    if positions is not None:
-        hips = positions[:, HIPS][:, [0, 2]]
-        axis.plot(*hips.T, color=body.GREY, lw=1.5, label="hips")
-        start = hips[0]
-        if contacts is not None:
-            _footprints(axis, positions, contacts)
-    axis.plot(*start, marker="^", color=body.INK, ms=11, ls="none")
-    _floor(axis, title)
-    return fig
-
-
-def _floor(axis: Axes, title: str) -> None:
+    fig, (axis,) = figure(6.2, 6.2, words)
+    axis.plot(path[:, 0], path[:, 1], "-", color=OKABE_ITO[2], lw=3, label="path")
+    axis.plot(0, 0, marker="^", color=body.INK, ms=11, ls="none")
     axis.set_aspect("equal", adjustable="datalim")
     axis.margins(0.08)
     axis.update_datalim([(-1.2, -0.6), (1.2, 1.2)])
     axis.autoscale_view()
     axis.invert_xaxis()  # x is the figure's left, so it grows to the left
-    axis.set(xlabel="x, left (m)", ylabel="z, ahead (m)", title=title)
+    axis.set(xlabel="x, left (m)", ylabel="z, ahead (m)")
     legend(axis, loc="best")
-
-
-def _footprints(axis: Axes, positions: np.ndarray, contacts: np.ndarray) -> None:
-    """Draw a line from ankle to toe on the floor, in the middle of every contact."""
-    for side, colour in enumerate((body.LEFT_COLOUR, body.RIGHT_COLOUR)):
-        for i, (begin, end) in enumerate(runs(contacts[:, side])):
-            foot = positions[(begin + end - 1) // 2][[HEELS[side], TOES[side]]][:, [0, 2]]
-            name = f"{('left', 'right')[side]} foot" if i == 0 else None
-            axis.plot(*foot.T, color=colour, lw=7, solid_capstyle="round", alpha=0.75, label=name)
+    return fig

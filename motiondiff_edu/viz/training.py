@@ -85,11 +85,7 @@ def clouds(
     fig, axes = figure(3.1 * len(panels), 3.7, words, 1, len(panels), share="xy")
     for k, (axis, (name, points)) in enumerate(zip(axes, panels.items(), strict=True)):
         axis.plot(
-            *np.asarray(points).T,
-            ".",
-            ms=2.5,
-            alpha=0.5,
-            color=INK if k == 0 else OKABE_ITO[k - 1],
+            *np.asarray(points).T, ".", ms=2.5, alpha=0.5, color=INK if k == 0 else OKABE_ITO[k - 1]
         )
         _plane(axis, name, reach, k == 0)
     return fig

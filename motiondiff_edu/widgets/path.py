@@ -134,7 +134,7 @@ class PathPad(Starting):
 
     def _repr_mimebundle_(self, **kwargs):
         buffer = io.BytesIO()
-        top_view(paths={"path": self.points}).savefig(buffer, format="png", dpi=70)
+        top_view(self.points).savefig(buffer, format="png", dpi=70)
         png = base64.b64encode(buffer.getvalue()).decode()
         alt = html.escape(self.description, quote=True)
         still = {

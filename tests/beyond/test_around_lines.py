@@ -6,11 +6,13 @@ import torch
 from two_numbers import correlated
 
 from data_synth.mixed import motions
-from motiondiff_edu.beyond.around_lines import HALF, GivenLines
+from motiondiff_edu.beyond.around_lines import HALF, GivenLines, lines_round
 from motiondiff_edu.ddpm import cosine_schedule, final
 from motiondiff_edu.exact import conditional, exact_denoiser, mixture
 from motiondiff_edu.inbetweening import inpaint_steps
-from motiondiff_edu.motion.dance_frame import placed_features
+from motiondiff_edu.motion.dance_frame import Place, at_origin, placed_features
+from motiondiff_edu.motion.directions import ARMS, UPLEGS
+from motiondiff_edu.motion.known import between_known
 from motiondiff_edu.motion.scaler import Scaler
 
 SCHEDULE = cosine_schedule(100)
@@ -87,3 +89,49 @@ def test_an_exact_remainder_gives_exact_samples_of_the_rest():
     assert torch.equal(made[:, 0], given[:, 0])
     assert float(made[:, 1].mean()) == pytest.approx(mean, abs=0.03)
     assert float(made[:, 1].var()) == pytest.approx(variance, rel=0.1)
+
+
+def turning(angles: np.ndarray) -> torch.Tensor:
+    """The features of a pose that turns on the spot, facing these angles."""
+    ((positions, _),) = motions(1, 5, 0.5)
+    pose = np.repeat(at_origin(positions)[:1, None], len(angles), 0)
+    placed = Place(np.zeros((len(angles), 3)), -np.asarray(angles)).enter(pose)[:, 0]
+    return torch.from_numpy(placed_features(placed)).float()
+
+
+def given(features: torch.Tensor, known: np.ndarray) -> torch.Tensor:
+    return features.where(torch.from_numpy(np.repeat(known, 3, 1)), torch.nan)
+
+
+@pytest.mark.parametrize("pair", [UPLEGS, ARMS])
+@pytest.mark.parametrize("turn", [-2.9, 1.0, 2.9])
+def test_lines_go_round_with_the_heading_of_hips_or_shoulders(pair, turn):
+    """A pose that turns evenly is its own line, though one pair alone says so in between."""
+    features = turning(np.linspace(0.5, 0.5 + turn, 11))
+    known = np.zeros((11, 21), bool)
+    known[[0, 10]] = True
+    lines = lines_round(given(features, known), known)
+    torch.testing.assert_close(lines, features, atol=1e-5, rtol=0)
+    other = UPLEGS if pair is ARMS else ARMS
+    known[:, other] = False  # the other pair alone tells the heading
+    some = np.repeat(known, 3, 1).any(0)
+    lines = lines_round(given(features, known), known)
+    torch.testing.assert_close(lines[:, some], features[:, some], atol=1e-5, rtol=0)
+    assert (lines[:, ~some] == 0).all()
+
+
+def test_lines_are_straight_where_nothing_says_which_way_the_figure_faces():
+    features, known = turning(np.linspace(0, 2, 11)), np.zeros((11, 21), bool)
+    known[[0, 10]] = True
+    known[:, [*UPLEGS, *ARMS]] = False
+    columns = torch.from_numpy(np.repeat(known, 3, 1))[None]
+    assert torch.equal(lines_round(features, known), between_known(features[None], columns)[0])
+
+
+def test_the_pelvis_goes_straight_and_turns_go_the_short_way():
+    angles = np.linspace(3.0, 3.0 + 2 * np.pi - 5.0, 6)  # from 172 to 246 degrees
+    features = turning(angles)
+    features[:, 0], features[:, 2] = torch.linspace(0, 2, 6), torch.linspace(1, 0, 6)
+    known = np.zeros((6, 21), bool)
+    known[[0, 5]] = True
+    torch.testing.assert_close(lines_round(features, known), features, atol=1e-5, rtol=0)

@@ -88,8 +88,6 @@ def test_walk_starts_and_ends_at_rest_and_takes_the_time_it_must():
     assert control[0, 0] < 0.1 and control[-1, 0] < 0.1
     assert np.isclose(control[:, 0].max(), 1.2, atol=1e-6)
     assert abs(len(control) / 20 - (6 / 1.2 + 1.2 / 1.2)) < 0.1  # v/a more than at constant speed
-    moving = path_to_control(np.array([[0.0, 0.0], [0.0, 6.0]]), 1.2, rest=False)
-    assert np.allclose(moving[:-2, 0], 1.2) and len(moving) < len(control)
 
 
 @pytest.mark.parametrize("fps", [20, 60])

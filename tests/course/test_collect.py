@@ -22,7 +22,9 @@ RIGHT = """def my_constant_beta(S, left):
 
 checks.constant_beta(my_constant_beta)"""
 WRONG = RIGHT.replace("2 / S", "1 / S")
-LOOP = RIGHT.replace("return 1", "while True:\n        pass\n    return 1")
+LOOP = RIGHT.replace(
+    "return 1", "import time\n    while True:\n        time.sleep(9)\n    return 1"
+)
 HOG = RIGHT.replace("return 1", "x = bytearray(3 * 2**29)\n    return 1")  # 1.5 GB
 CRASH = RIGHT.replace("return 1", "import os\n    os._exit(3)\n    return 1")
 LEAVE = RIGHT.replace("return 1", "raise SystemExit\n    return 1")

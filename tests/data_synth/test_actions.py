@@ -169,11 +169,16 @@ def _lasts(acted) -> float:
     return span.last - span.first
 
 
-def test_the_count_cannot_be_read_from_the_length():
-    rng = np.random.default_rng(0)
+@pytest.fixture(scope="module")
+def drawn():
+    """Sentences and their seconds."""
+    rng = np.random.default_rng(1)
+    return [draw(rng) for _ in range(12_500)]
+
+
+def test_the_count_cannot_be_read_from_the_length(drawn):
     rows = []
-    for _ in range(6000):
-        sentence, seconds = draw(rng)
+    for sentence, seconds in drawn[:6000]:
         for phrase in sentence:
             rows += [(a.verb, a.count, seconds) for a in phrase.acts if VERBS[a.verb].most > 1]
     counts = np.array([row[1] for row in rows])
@@ -187,11 +192,10 @@ def test_the_count_cannot_be_read_from_the_length():
     assert max(means) - min(means) < 0.5
 
 
-def test_two_acts_on_the_spot_come_in_a_row_in_clips_of_every_length():
-    rng = np.random.default_rng(3)
+def test_two_acts_on_the_spot_come_in_a_row_in_clips_of_every_length(drawn):
     lengths = [
         seconds
-        for sentence, seconds in (draw(rng) for _ in range(8000))
+        for sentence, seconds in drawn
         if [(p.legs.verb if p.legs else "") for p in sentence] == ["kick", "bow"]
     ]
     assert len(lengths) > 5 and min(lengths) < 7 < 9 < max(lengths)
@@ -200,11 +204,10 @@ def test_two_acts_on_the_spot_come_in_a_row_in_clips_of_every_length():
     assert counts == [[1, 1], [2, 2]] and fitted(form, 3.0) == []
 
 
-def test_captions_are_many_and_have_several_wordings():
+def test_captions_are_many_and_have_several_wordings(drawn):
     rng = np.random.default_rng(1)
     bare, texts = set(), set()
-    for _ in range(12_500):
-        sentence, _ = draw(rng)
+    for sentence, _ in drawn:
         acts = [replace(act, speed="") for phrase in sentence for act in phrase.acts]
         bare.add(tuple(sorted(map(str, acts))))
         texts.add(caption(sentence, rng))
@@ -244,17 +247,15 @@ def test_mirroring_exchanges_motion_truth_and_words(made):
     assert [s.act.side for s in turned.acted.spans] == [swap.get(side, side) for side in sides]
 
 
-def test_held_out_pairs_are_enough_and_every_word_is_trained():
+def test_held_out_pairs_are_enough_and_every_word_is_trained(drawn):
     out, every = held_out(), all_pairs()
     for kinds in (("speed",), ("direction",), ("while",), ("then",), SIDES):
         own = [pair for pair in every if pair[0] in kinds]
         assert sum(pair in out for pair in own) >= 0.15 * len(own)
     sides = [pair[1:] for pair in out if pair[0] in SIDES]
     assert len(sides) == len(set(sides)), "of two acts, nothing would teach the sides"
-    rng = np.random.default_rng(3)
     seen = Counter()
-    for _ in range(4000):
-        sentence, _ = draw(rng)
+    for sentence, _ in drawn[:4000]:
         if in_training(sentence):
             seen.update(word for pair in pairs(sentence) for word in pair[1:])
             seen.update(act.side for phrase in sentence for act in phrase.acts)
@@ -262,10 +263,10 @@ def test_held_out_pairs_are_enough_and_every_word_is_trained():
     assert set(VERBS) | {"left", "right", "slowly", "quickly", "forward", "around"} <= set(seen)
 
 
-def test_nothing_that_is_held_out_comes_into_a_training_by_the_mirror_or_a_neighbour():
+def test_nothing_that_is_held_out_comes_into_a_training_by_the_mirror_or_a_neighbour(drawn):
     """The sentence of every clip, that of its mirrored twin, and the wrong one that judges get."""
     rng = np.random.default_rng(4)
-    kept = [s for s, _ in (draw(rng) for _ in range(3000)) if in_training(s)]
+    kept = [s for s, _ in drawn[:3000] if in_training(s)]
     assert len(kept) > 1500
     for sentence in kept:
         assert pairs(mirrored_sentence(sentence)) == pairs(sentence)

@@ -11,7 +11,7 @@ import torch
 
 from data_synth.mixed import motions
 from motiondiff_edu.metrics.bodies import bone_rmse
-from motiondiff_edu.pretrained.checkpoints import load_dancer, save
+from motiondiff_edu.pretrained.checkpoints import load, save
 from motiondiff_edu.recipes.dancer import UNCONDITIONAL, train_dancer, training_windows
 
 TINY = replace(
@@ -44,7 +44,7 @@ def test_a_network_that_hears_nothing_is_trained_saved_and_read(tmp_path):
     assert heard.shape[2] == 0 and motion.shape == (5, 100, 63) and stands.shape == (5, 100, 2)
     assert len(windows) == 2 * 4 * (1 + (160 - 100) // 16)
     dancer = train_dancer(TINY, tmp_path / "run.safetensors", windows, log=lambda line: None)
-    back = load_dancer(save(dancer, tmp_path / "weights.safetensors"))
+    back = load(save(dancer, tmp_path / "weights.safetensors"))
     assert back.config.C == 0 and back.mel_scaler.mean.shape == (0,)
     x = torch.randn(2, 37, 63)
     assert back.denoiser(None, 37)(x, torch.tensor([3, 9])).shape == x.shape

@@ -2,13 +2,7 @@
 
 import pytest
 
-from motiondiff_edu.editing.masks import (
-    body_part,
-    gap,
-    keyframes,
-    known_frames,
-    seed,
-)
+from motiondiff_edu.editing.masks import body_part, gap, keyframes, known_frames, seed
 
 
 def test_masks():

@@ -11,11 +11,7 @@ from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.dancer import Dancer
-from motiondiff_edu.performers.inbetweener import (
-    Inbetweener,
-    KeyframeConfig,
-    KeyframeMoFusion,
-)
+from motiondiff_edu.performers.inbetweener import Inbetweener, KeyframeConfig, KeyframeMoFusion
 
 TINY = MoFusionConfig(S=12, widths=(16, 24), heads=2, music_layers=1, target="x0", skip=False)
 HEARS = MoFusionConfig(C=5, S=30, widths=(16, 24), heads=2, music_layers=1, target="x0", skip=False)

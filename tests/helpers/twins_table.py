@@ -37,12 +37,7 @@ from motiondiff_edu import (
 from motiondiff_edu import cross_modal_attention as cross
 from motiondiff_edu.baselines import linear_dropout, ridge, text
 from motiondiff_edu.conditions import music
-from motiondiff_edu.metrics import (
-    bodies,
-    dances,
-    distributions,
-    walks,
-)
+from motiondiff_edu.metrics import bodies, dances, distributions, walks
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.mofusion import ResBlock
 from motiondiff_edu.motion import kinematics, root_frame, skeleton

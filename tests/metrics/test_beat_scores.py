@@ -42,13 +42,7 @@ def test_the_means_are_those_of_the_clips():
         numbers.bas_chance,
         numbers.beats_per_beat,
         numbers.speed,
-    ] == [
-        3.0,
-        6.0,
-        9.0,
-        12.0,
-        15.0,
-    ]
+    ] == [3.0, 6.0, 9.0, 12.0, 15.0]
 
 
 def test_shuffled_is_each_dance_with_each_other_song():

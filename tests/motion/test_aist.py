@@ -12,7 +12,7 @@ import pytest
 from numpy._core.multiarray import _reconstruct
 from numpy._core.numeric import _frombuffer as frombuffer
 
-from motiondiff_edu.motion.formats.aist import AistError, read_keypoints, tempo_of
+from motiondiff_edu.motion.formats.aist import AistError, read_keypoints
 
 NAME = "gJS_sBM_cAll_d03_mJS4_ch06.pkl"
 
@@ -34,27 +34,19 @@ def written(folder, content, name=NAME, protocol=4):
 def test_real_clips_are_read(real_data):
     folder = real_data / "aist" / "keypoints3d"
     clip = read_keypoints(folder / "gBR_sBM_cAll_d06_mBR2_ch06.pkl")
-    assert (
-        clip.positions.shape == (576, 17, 3)
-        and clip.fps == 60
-        and clip.tempo == 100
-        and not len(clip.nan_frames)
-    )
+    assert clip.positions.shape == (576, 17, 3) and clip.fps == 60
+    assert np.isfinite(clip.positions).all()
     assert 0.67 < clip.floor < 0.72  # the lowest joint, metres, as others measured
     height = clip.positions[:, 0, 1] - clip.positions[:, 15:, 1].min(1)
     assert 1.3 < np.percentile(height, 95) < 1.8  # nose above the lower ankle
-    raw = read_keypoints(folder / "gBR_sBM_cAll_d04_mBR2_ch08.pkl", optimised=False)
-    assert len(raw.nan_frames) == 24 and np.isnan(raw.positions[raw.nan_frames]).any((1, 2)).all()
-    assert np.isfinite(np.delete(raw.positions, raw.nan_frames, 0)).all()
 
 
 @pytest.mark.parametrize("protocol", [2, 4, 5])
 def test_centimetres_become_metres_above_the_floor(tmp_path, protocol):
     content = {"keypoints3d": made_up(5) + 50, "keypoints3d_optim": made_up()}
     clip = read_keypoints(written(tmp_path, content, protocol=protocol))
-    assert clip.floor == pytest.approx(0.7) and clip.source == NAME and clip.tempo == 120
+    assert clip.floor == pytest.approx(0.7) and clip.source == NAME
     np.testing.assert_allclose(clip.positions, made_up() / 100 - [0, 0.7, 0])
-    assert read_keypoints(tmp_path / NAME, optimised=False).positions.shape == (5, 17, 3)
 
 
 def test_one_bad_frame_does_not_lower_the_floor(tmp_path):
@@ -65,31 +57,15 @@ def test_one_bad_frame_does_not_lower_the_floor(tmp_path):
     ).floor == pytest.approx(0.7)
 
 
-def test_missing_joints_are_reported_and_stay_missing(tmp_path):
+def test_missing_joints_stay_missing(tmp_path):
     keypoints = made_up()
     keypoints[2, 5, 0] = np.nan
     clip = read_keypoints(written(tmp_path, {"keypoints3d_optim": keypoints}))
-    assert (
-        clip.nan_frames.tolist() == [2]
-        and np.isnan(clip.positions[2, 5, 0])
-        and clip.floor == pytest.approx(0.7)
-    )
+    assert np.argwhere(np.isnan(clip.positions)).tolist() == [[2, 5, 0]]
+    assert clip.floor == pytest.approx(0.7)
     keypoints[:, 1] = np.nan
     with pytest.raises(AistError, match="every frame"):
         read_keypoints(written(tmp_path, {"keypoints3d_optim": keypoints}))
-
-
-@pytest.mark.parametrize(
-    "name, tempo",
-    [
-        ("gBR_sBM_cAll_d04_mBR2_ch08.pkl", 100),
-        ("gHO_sBM_cAll_d19_mHO0_ch01", 110),
-        ("gHO_sFM_cAll_d20_mHO5_ch11.pkl", 135),
-        ("mine.pkl", None),
-    ],
-)
-def test_names_tell_the_tempo(name, tempo):
-    assert tempo_of(name) == tempo
 
 
 class Hostile:

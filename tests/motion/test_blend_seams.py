@@ -6,13 +6,7 @@ from synthetic_walk import walk
 
 from motiondiff_edu.metrics.bodies import bone_lengths
 from motiondiff_edu.metrics.keyframes import seam_jump
-from motiondiff_edu.motion.cleanup import (
-    LONGEST,
-    SECONDS,
-    blend_seams,
-    continue_smoothly,
-    fade_out,
-)
+from motiondiff_edu.motion.cleanup import LONGEST, SECONDS, blend_seams, continue_smoothly, fade_out
 
 N = round(20 * SECONDS)
 

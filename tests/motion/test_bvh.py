@@ -126,12 +126,6 @@ def test_root_position_replaces_its_offset(tmp_path):
     assert np.array_equal(bvh.rest_positions()[0], [1, 90, 2])
 
 
-def test_end_sites_can_be_left_out(tmp_path):
-    bvh = read(tmp_path, SMALL)
-    assert bvh.world_positions(end_sites=False).shape == (3, 3, 3)
-    assert np.array_equal(bvh.world_positions(end_sites=False), bvh.world_positions()[:, [0, 1, 3]])
-
-
 @pytest.mark.parametrize(
     ("seconds", "fps"),
     [

@@ -47,7 +47,7 @@ def test_no_overlap_and_an_impossible_one():
         slice_clips([clip_of(90)], overlap=1.0)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(4))
 def test_no_source_stands_on_two_sides(seed):
     """A property of any data set.
 

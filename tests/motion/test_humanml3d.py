@@ -467,7 +467,6 @@ def test_a_mirrored_clip_is_the_mirror_image(folder):
     plain, mirrored = read[0].motion.positions, read[2].motion.positions
     left, right = (joint_index(s + "Foot") for s in ("Left", "Right"))
     np.testing.assert_allclose(mirrored[:, left], plain[:, right] * [-1, 1, 1], atol=1e-9)
-    assert humanml3d_folder.recording_of("M000021") == humanml3d_folder.recording_of("000021")
     names = [c.name for c in humanml3d_folder.read_clips(folder, "train", mirrored=False)]
     assert names == ["000021", "000021", "000007"]
 

@@ -204,7 +204,3 @@ def test_stub_within_a_loop_keeps_its_indent():
         'def f(x):\n    for i in x:\n        raise NotImplementedError("your turn")\n    return y'
     )
     assert build_student.stub(source, "here") == wanted
-
-
-def test_the_edition_of_this_checkout_is_up_to_date():
-    assert build_student.stale(notebook_cells.NOTEBOOKS) == [], "run: make student"

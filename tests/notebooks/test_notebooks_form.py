@@ -7,7 +7,6 @@ import copy
 import json
 
 import check_notebooks
-import notebook_cells
 import pytest
 
 OPENING = """# 02 Noise
@@ -318,8 +317,3 @@ def test_local_names_and_those_defined_again_are_not_of_an_extra_cell(good, tmp_
     good["cells"][8]["source"] = "z = 2\nprint(z)"
     good["cells"][10]["source"] = "print(z)"
     assert not [fault for fault in faults(good, tmp_path) if "extra cell" in fault]
-
-
-@pytest.mark.parametrize("path", notebook_cells.sources(), ids=lambda path: path.stem)
-def test_the_notebooks_of_this_checkout_have_the_form(path):
-    assert check_notebooks.faults(path) == []

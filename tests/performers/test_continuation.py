@@ -38,12 +38,12 @@ def walker():
     return md.load("walker")
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def usual() -> Motion:
     return Motion.of_clip(walk(constant_control(1.0, seconds=3.0), seed=5))
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def unusual(usual) -> Motion:
     """The same walk with both hands above the head, which no walk of the training has."""
     moved = usual.positions.copy()

@@ -24,13 +24,7 @@ from motiondiff_edu.motion.dance_frame import to_positions
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.dancer import ETA, LOUD, Dancer
 from motiondiff_edu.prediction import to_eps
-from motiondiff_edu.pretrained.checkpoints import (
-    CheckpointError,
-    load,
-    load_dancer,
-    load_walker,
-    save,
-)
+from motiondiff_edu.pretrained.checkpoints import load, save
 
 UNET = MoFusionConfig(C=5, S=12, widths=(16, 24), heads=2, music_layers=1, target="x0", skip=False)
 PLAIN = TransformerConfig(C=5, S=12, width=16, heads=2, layers=2, music_layers=1)
@@ -192,18 +186,12 @@ def test_regression_learns_the_mean_of_what_it_sees():
 @pytest.mark.parametrize("config", [UNET, PLAIN])
 def test_a_file_gives_the_same_dancer_back(config, tmp_path: Path):
     one = dancer(config)
-    again = load_dancer(save(one, tmp_path / "one.safetensors", bits=32))
+    again = load(save(one, tmp_path / "one.safetensors", bits=32))
     assert again.config == config and again.card == {"name": "test"}
     assert isinstance(load(tmp_path / "one.safetensors"), Dancer)
     start = torch.randn(2, 20, 63)
     both = [d.dance_mel(mel(), start=start, frames=20, steps=3, eta=0.0) for d in (one, again)]
     torch.testing.assert_close(*both, atol=1e-6, rtol=1e-6)
-
-
-def test_a_dancer_is_no_walker(tmp_path: Path):
-    path = save(dancer(), tmp_path / "one.safetensors")
-    with pytest.raises(CheckpointError, match="not a walker .*dancer"):
-        load_walker(path)
 
 
 def test_schedule_and_network_must_have_as_many_steps():

@@ -5,17 +5,14 @@ import pytest
 import torch
 
 from data_synth.music.song import GENRES as SONG_GENRES
-from motiondiff_edu.baselines.transformer import (
-    HearingTransformer,
-    HearingTransformerConfig,
-)
+from motiondiff_edu.baselines.transformer import HearingTransformer, HearingTransformerConfig
 from motiondiff_edu.cross_modal_attention import angles_of
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.performers.ear import GENRES, LONGEST, Ear, EarConfig, in_parts
 from motiondiff_edu.performers.hearing_mofusion import HearingConfig, HearingMoFusion
-from motiondiff_edu.pretrained.checkpoints import load_dancer, save
+from motiondiff_edu.pretrained.checkpoints import load, save
 from motiondiff_edu.recipes.ear import EAR
 
 SMALL = EarConfig(C=5, width=16, heads=2, blocks=2, music_layers=1)
@@ -140,7 +137,7 @@ def test_a_network_adds_what_its_ear_hears(network, config):
 def test_a_network_with_an_ear_is_saved_and_read(network, config, tmp_path):
     motion = Scaler(torch.zeros(63), torch.full((63,), 0.2))
     dancer = Dancer(moved(network(config)), cosine_schedule(12), motion, Scaler.nothing(5))
-    again = load_dancer(save(dancer, tmp_path / "one.safetensors", bits=32))
+    again = load(save(dancer, tmp_path / "one.safetensors", bits=32))
     assert again.config == config
     mel, _ = piece(2, 41)
     x, s = torch.randn(2, 20, 63, generator=torch.Generator().manual_seed(3)), torch.tensor([3, 9])

@@ -14,12 +14,7 @@ from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.ear import Ear, EarConfig, EarOutput, rescale_ear
 from motiondiff_edu.recipes import ear as recipes
 from motiondiff_edu.recipes.ear import EarRecipe, drawn_batch, hearing_loss, loss_of_ear, train_ear
-from motiondiff_edu.recipes.songs import (
-    HeardSongs,
-    songs_as_mel,
-    training_songs,
-    without_sound,
-)
+from motiondiff_edu.recipes.songs import HeardSongs, songs_as_mel, training_songs, without_sound
 
 RECIPE = EarRecipe(
     config=EarConfig(C=3, width=16, blocks=1), frames=(21,), batch=40, gain_noise=0.0, steps=2

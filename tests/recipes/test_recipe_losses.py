@@ -83,10 +83,7 @@ def test_dancers_losses_are_those_that_the_shipped_ones_were_trained_with(name):
     model = MoFusion(recipe.config)
     torch.nn.init.normal_(model.out.weight, std=0.1)
     windows = dances(music=recipe.config.C > 0)
-    loss_fn, generator = (
-        dancer.loss_of(replace(recipe, batch=6), windows, schedule),
-        seeded(),
-    )
+    loss_fn, generator = (dancer.loss_of(replace(recipe, batch=6), windows, schedule), seeded())
     assert [loss_fn(model, generator).item() for _ in range(3)] == pytest.approx(losses, rel=2e-5)
     assert torch.rand(1, generator=generator).item() == after
 

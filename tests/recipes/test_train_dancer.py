@@ -15,7 +15,7 @@ from motiondiff_edu.conditions.music import log_mel
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.performers.ear import EarConfig
 from motiondiff_edu.performers.networks import network
-from motiondiff_edu.pretrained.checkpoints import load, load_dancer
+from motiondiff_edu.pretrained.checkpoints import load
 from motiondiff_edu.recipes import __main__ as command
 from motiondiff_edu.recipes.dancer import (
     DANCE_RECIPES,
@@ -85,8 +85,14 @@ def test_every_dance_has_its_own_song(windows):
     assert windows.song_starts[-1] >= len(windows.mel) - len(mel)
 
 
-def test_a_killed_training_continues_bit_for_bit(windows, tmp_path: Path):
-    whole = train_dancer(TINY, tmp_path / "whole.safetensors", windows, log=lambda line: None)
+@pytest.fixture(scope="module")
+def whole(windows, tmp_path_factory):
+    """Trained in one go."""
+    path = tmp_path_factory.mktemp("whole") / "whole.safetensors"
+    return train_dancer(TINY, path, windows, log=lambda line: None)
+
+
+def test_a_killed_training_continues_bit_for_bit(whole, windows, tmp_path: Path):
 
     def stop(line: str) -> None:
         if " 3/6" in line:
@@ -102,19 +108,18 @@ def test_a_killed_training_continues_bit_for_bit(windows, tmp_path: Path):
     assert [sitting["from_step"] for sitting in again.card["sittings"]] == [0, 3]
     with pytest.raises(ValueError, match="begun with lr"):
         train_dancer(
-            replace(TINY, lr=1e-4), tmp_path / "whole.safetensors", windows, log=lambda line: None
+            replace(TINY, lr=1e-4), tmp_path / "killed.safetensors", windows, log=lambda line: None
         )
 
 
-def test_what_a_recipe_says_reaches_the_training(windows, monkeypatch, tmp_path: Path):
-    trained = train_dancer(TINY, tmp_path / "one.safetensors", windows, log=lambda line: None)
-    assert torch.equal(trained.schedule.alpha_bar, cosine_schedule(20).alpha_bar)
+def test_what_a_recipe_says_reaches_the_training(whole, windows, monkeypatch):
+    assert torch.equal(whole.schedule.alpha_bar, cosine_schedule(20).alpha_bar)
     torch.manual_seed(0)
     model = network(TINY.config)
 
     def loss(**changed) -> float:
         recipe = replace(TINY, **changed)
-        return loss_of(recipe, windows, trained.schedule)(
+        return loss_of(recipe, windows, whole.schedule)(
             model, torch.Generator().manual_seed(0)
         ).item()
 
@@ -148,16 +153,15 @@ def test_the_ear_is_that_of_its_own_training(windows, tmp_path: Path):
     assert len(list(tmp_path.glob("ear-*"))) == 2
 
 
-def test_an_ear_can_be_taken_over(windows, tmp_path: Path):
-    first = train_dancer(TINY, tmp_path / "a" / "one.safetensors", windows, log=lambda line: None)
-    ear = ear_within(first)
-    assert ear.card == first.card["ear"] | {"taken_over": True}
+def test_an_ear_can_be_taken_over(whole, windows, tmp_path: Path):
+    ear = ear_within(whole)
+    assert ear.card == whole.card["ear"] | {"taken_over": True}
     other = replace(TINY, name="other", seed=3)
     run = tmp_path / "b" / "two.safetensors"
     second = train_dancer(other, run, windows, log=lambda line: None, ear=ear)
     assert not list(run.parent.glob("ear-*"))  # none was trained
     assert second.card["ear"]["taken_over"]
-    for a, b in zip(second.model.ear.parameters(), first.model.ear.parameters(), strict=True):
+    for a, b in zip(second.model.ear.parameters(), whole.model.ear.parameters(), strict=True):
         torch.testing.assert_close(a, b, rtol=0, atol=1e-6)
     wider = replace(TINY, config=replace(TINY.config, ear_width=32), ear=replace(
         EARS, config=EarConfig(width=32, blocks=1)
@@ -207,7 +211,7 @@ def test_the_command_trains_a_recipe_into_a_file(monkeypatch, tmp_path: Path, ca
     with pytest.raises(SystemExit):
         command.main()
     assert "--ear unconditional: MoFusion has no ear" in capsys.readouterr().err
-    dancer = load_dancer(tmp_path / "regression.safetensors")
+    dancer = load(tmp_path / "regression.safetensors")
     assert (
         dancer.card["recipe"]["steps"] == 6
         and dancer.card["target"] == "x0"
@@ -219,7 +223,7 @@ def test_the_command_trains_a_recipe_into_a_file(monkeypatch, tmp_path: Path, ca
     monkeypatch.setattr("sys.argv", ["pretrained", "regression", *taken, "--out", str(tmp_path)])
     command.main()
     assert not list((tmp_path / "again").glob("ear-*"))
-    assert load_dancer(tmp_path / "regression.safetensors").card["ear"]["taken_over"]
+    assert load(tmp_path / "regression.safetensors").card["ear"]["taken_over"]
     assert "wrote" in capsys.readouterr().out
 
 

@@ -13,7 +13,7 @@ from budget import BUDGET, train_for
 
 from motiondiff_edu.diffusion_dropout import P_D, Dropout
 from motiondiff_edu.modiff import MODIFF_SMALL, MoDiff
-from motiondiff_edu.pretrained.checkpoints import load_walker, save
+from motiondiff_edu.pretrained.checkpoints import load, save
 from motiondiff_edu.recipes import __main__ as command
 from motiondiff_edu.recipes import walker as train_module
 from motiondiff_edu.recipes.training import commit_of, notes_of
@@ -43,7 +43,7 @@ def test_the_data_hold_every_clip_four_times_when_all_are_reversed():
 
 def test_a_recipe_becomes_a_walker_with_its_card(tmp_path: Path):
     walker = train(SHORT, tmp_path / "run", log=quiet)
-    card = load_walker(save(walker, tmp_path / "short.safetensors")).card
+    card = load(save(walker, tmp_path / "short.safetensors")).card
     assert card["name"] == "short" and card["target"] == "eps" and card["recipe"]["steps"] == 6
     assert card["frames"] == 8 * 40 and card["minutes"] >= 0 and card["final_loss"] > 0
     (sitting,) = card["sittings"]
@@ -167,7 +167,7 @@ def test_what_a_recipe_begins_with_is_trained_before_it(tmp_path: Path, monkeypa
     later = replace(SHORT, name="later", begins_with="short", steps=1)
     monkeypatch.setattr(command, "RECIPES", {"short": SHORT, "later": later})
     command.build("later", tmp_path / "later.safetensors", tmp_path / "out.safetensors")
-    assert load_walker(tmp_path / "out.safetensors").card["name"] == "later"
+    assert load(tmp_path / "out.safetensors").card["name"] == "later"
     assert notes_of(tmp_path / "short.safetensors")
 
 

@@ -141,7 +141,7 @@ def test_what_trains_is_run_when_asked_for_only():
     lines = {"walker": Walks("walker", "walker", 10)}
     plain = command.parts_of([], False, lines, weights)  # there are no weights of that walker
     assert set(plain) == {
-        "dancer", "unheard", "footsteps", "dance-data", "attention", "dance-time", "known-answer",
+        "dancer", "unheard", "footsteps", "dance-data", "attention", "dance-time",
         "course", "dance-ways", "ear",
     }  # fmt: skip
     full = command.parts_of([], True, {}, weights)

@@ -112,7 +112,7 @@ def test_each_way_is_asked_for_and_measured(monkeypatch):
     monkeypatch.setattr(parts, "weights_digest", lambda path: "w")
     stage.weights = {"dancer": None}
     found = {one["name"]: one for one in way_records(stage, "c")}
-    assert set(heard.asked) == {(1, 25), (2, 25), (4, 25), (4, 10), (4, 50)}
+    assert set(heard.asked) == {(1, 25), (2, 25), (4, 10), (4, 50)}
     speeds = {way: found[f"dancer.{way}.speed_mps"]["value"] for way in WAYS}
     assert speeds["guided.2"] == pytest.approx(2 * speeds["guided.1"], rel=1e-3)
     assert speeds["steps50"] == pytest.approx(5 * speeds["steps10"], rel=1e-3)

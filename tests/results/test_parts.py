@@ -13,7 +13,6 @@ CALLED = {  # part: where its function is, and its name
     "dance-data": (command.dances, "data_records"),
     "attention": (command, "attention_records"),
     "dance-time": (command, "time_records"),
-    "known-answer": (command.known_answer, "known_answer_records"),
     "course": (command, "course_records"),
     "mend": (command.mend, "records"),
     "mend-both": (command.both, "both_records"),

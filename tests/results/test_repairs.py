@@ -13,12 +13,15 @@ from data_synth.imperfect import ARM, dead_joints, dropped_frames
 from motiondiff_edu.beyond.back_with_known import masked_way_back
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.metrics.bodies import bone_rmse
+from motiondiff_edu.motion.root_frame import to_world
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import JOINTS
 from motiondiff_edu.reconstruction import plain_way_back
 from tools.results.repairs import both, repair
 from tools.results.repairs import dropout as dropout_part
 from tools.results.repairs import rivals as rivals_part
+from tools.results.repairs.both import WINDOW, masked_window
+from tools.results.repairs.repair import FAULTS
 from tools.results.repairs.rivals import rivals
 from tools.results.repairs.trials import as_given, names_of, without
 from tools.results.walks.scores import measures_over_seeds
@@ -85,7 +88,7 @@ def test_gains_and_cost_by_hand():
 
 def test_each_comparison_has_names_of_its_own(trials, monkeypatch):
     """The shipped pair beside the small pairs: no measure of one overwrites one of the other."""
-    monkeypatch.setattr(dropout_part.checkpoints, "load_walker", lambda path: path)
+    monkeypatch.setattr(dropout_part.checkpoints, "load", lambda path: path)
     monkeypatch.setattr(
         dropout_part,
         "measured",
@@ -196,9 +199,7 @@ def test_both_papers_repairs_are_scored_where_both_had_to_guess(trials, monkeypa
 
     monkeypatch.setattr(both, "repaired", repaired)
     monkeypatch.setattr(
-        both,
-        "masked",
-        lambda dancer, world, known, n, fill=None: (world + 5 / 3 * side)[None],
+        both, "masked", lambda dancer, world, known, n, fill=None: (world + 5 / 3 * side)[None]
     )
     found = {one.name: one.value for one in both.both_measures(None, None, trials, repair.QUICK)}
     assert (
@@ -222,3 +223,15 @@ def test_walks_from_broken_pasts_are_over_those_from_whole_ones(trials, monkeypa
     found, _ = repair.table_2([None], trials, repair.QUICK, windows)
     value = {one.name: one.value for one in found}
     assert value["table2_ge_over_whole"] == pytest.approx(2, rel=1e-6)
+
+
+def test_the_masking_network_sees_what_the_walker_sees():
+    trials = unseen(3, 4)
+    broken = FAULTS["frames"](trials.past)
+    world, known = masked_window(trials, broken.known)
+    assert (
+        world.shape == (3, WINDOW, 21, 3) and known[:, 10:20].sum() == 3 * 10
+    )  # the pelvis' path, ten frames on
+    assert known[:, 3:7].sum() == 3 * 4
+    whole = to_world(np.concatenate([trials.past[0], trials.truth[0]]), trials.control[0])
+    np.testing.assert_allclose(world[0], whole[:WINDOW], atol=1e-9)

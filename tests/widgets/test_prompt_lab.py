@@ -36,10 +36,7 @@ def test_a_sentence_is_typed_and_acted_in_jupyterlab(browser, lab):
         for text, words in SILLY.items():
             sentence.fill(text)
             sentence.press("Enter")
-            page.wait_for_function(
-                SAYS,
-                arg=words,
-            )
+            page.wait_for_function(SAYS, arg=words)
             if folder:
                 page.screenshot(path=os.path.join(folder, f"prompt_{len(text)}.png"))
             assert page.evaluate(ASK, "print(box.motions is first)") == "True"

@@ -41,7 +41,7 @@ from .dances import real_music
 from .dances.attention import attention_picture, attention_records
 from .dances.hearing import hearing_records
 from .dances.timing import time_records
-from .inbetweens import departures, inbetween, known_answer
+from .inbetweens import departures, inbetween
 from .page.cards import add_metrics
 from .page.render import render
 from .recordings import continuations, persons, reconstructions, trainings
@@ -89,7 +89,7 @@ class Context:
     def walker(self) -> tuple:
         """The shipped walker, the digest of its weights, and the size for recordings."""
         path = self.bench.weights["walker"]
-        return checkpoints.load_walker(path), digest(path), self.recorded
+        return checkpoints.load(path), digest(path), self.recorded
 
     @property
     def recorded(self) -> recorded.RecordedSize:
@@ -146,8 +146,6 @@ PARTS = {
     "dance-data": part(lambda c, command: dances.data_records(c.stage, command)),
     "attention": part(attention, "dancer"),
     "dance-time": part(lambda c, command: time_records(c.of(ROUNDS, 2), command)),
-    "known-answer": part(lambda c, command: known_answer.known_answer_records(
-        c.of(known_answer.FULL, known_answer.QUICK), command)),
     "course": part(lambda c, command: course_records(command, c.of(None, 3))),
     "mend": part(lambda c, command: mend.records(c.bench, c.of(repair.FULL, repair.QUICK), command),
                  "walker", "walker-plain", *names_of("plain"), *names_of("dropout")),

@@ -231,16 +231,5 @@ def loft(p: Sheet) -> None:
         p.arms(k, *(pair if s > 0 else pair[::-1]))
 
 
-MOVES = (
-    jack,
-    shuffle,
-    side_step,
-    loose_legs,
-    cross_step,
-    stomp,
-    skip,
-    farmer,
-    turn_step,
-    loft,
-)
+MOVES = (jack, shuffle, side_step, loose_legs, cross_step, stomp, skip, farmer, turn_step, loft)
 CALM = (sway_low, jack)

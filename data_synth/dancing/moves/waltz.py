@@ -281,15 +281,5 @@ def natural_turn(p: Sheet) -> None:
     pick_arms[int(p.rng.integers(2))](p)
 
 
-MOVES = (
-    box,
-    turning_box,
-    balance,
-    twinkle,
-    progressive,
-    sway_arms,
-    spin_turn,
-    whisk,
-    natural_turn,
-)
+MOVES = (box, turning_box, balance, twinkle, progressive, sway_arms, spin_turn, whisk, natural_turn)
 CALM = (breathe, balance)

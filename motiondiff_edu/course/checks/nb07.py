@@ -47,8 +47,7 @@ class _Sampler:
     def __call__(self, past, control):
         seen, wanted = tuple(past.shape), (self.B, self.T_h, self.D)
         expect(
-            seen == wanted,
-            f"the sampler got a past {seen}; it needs the last T_h poses, {wanted}",
+            seen == wanted, f"the sampler got a past {seen}; it needs the last T_h poses, {wanted}"
         )
         seen, wanted = tuple(control.shape), (self.B, self.T_h + self.T_p, self.C)
         expect(

@@ -104,6 +104,5 @@ def _expect_words(told: dict[int, tuple]) -> None:
             expect(same != told, f"the words: {hint}")
     T = next(T for T in told if told[T] != right[T])
     expect(
-        False,
-        f"the words should be {' '.join(right[T])!r}, not {' '.join(map(str, told[T]))!r}",
+        False, f"the words should be {' '.join(right[T])!r}, not {' '.join(map(str, told[T]))!r}"
     )

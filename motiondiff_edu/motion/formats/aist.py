@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float
 
 AIST_FPS = 60.0
 COCO = (
@@ -57,23 +57,17 @@ class AistError(ValueError):
 class Keypoints:
     """A recorded dance: 17 joints (`COCO`) in metres at 60 frames/s, the floor at y = 0.
 
-    `floor` is the height in metres that was subtracted. `nan_frames` lists the frames with a
-    missing joint, which stays NaN. `tempo` is the music's beats per minute according to the file's
-    name, or None.
+    `floor` is the height in metres that was subtracted. A missing joint stays NaN.
     """
 
     positions: Float[np.ndarray, "T 17 3"]
     floor: float
-    nan_frames: Int[np.ndarray, "n"]
-    tempo: float | None
     source: str
     fps: float = AIST_FPS
 
 
-def read_keypoints(path: str | Path, optimised: bool = True) -> Keypoints:
-    """Read a keypoints3d pickle of AIST++.
-
-    `optimised=True` reads keypoints3d_optim, which has no gaps; False reads the raw keypoints3d.
+def read_keypoints(path: str | Path) -> Keypoints:
+    """Read keypoints3d_optim of a keypoints3d pickle of AIST++; keypoints3d beside it has gaps.
 
     The floor is the 1st percentile over frames of the lowest joint. COCO has no toes, so the ankles
     of a standing figure come to height 0. One bad frame does not lower the floor.
@@ -88,29 +82,14 @@ def read_keypoints(path: str | Path, optimised: bool = True) -> Keypoints:
             f"{path.name}: larger than {LARGEST // 1_000_000} MB, so it is not a keypoints file."
         )
     content = _load(path)
-    key = "keypoints3d_optim" if optimised else "keypoints3d"
+    key = "keypoints3d_optim"
     cm = _array(content, key, path.name)
     known = np.isfinite(cm).all((1, 2))
     if not known.any():
         raise AistError(f"{path.name}: every frame of {key} has a missing joint.")
     positions = cm / 100.0
     floor = float(np.percentile(positions[known][..., 1].min(1), FLOOR_PERCENTILE))
-    return Keypoints(
-        positions - [0.0, floor, 0.0], floor, np.flatnonzero(~known), tempo_of(path.name), path.name
-    )
-
-
-def tempo_of(name: str) -> float | None:
-    """The music's beats per minute, from an AIST++ file name: mBR2 is 80 + 10 * 2 = 100.
-
-    House music starts higher: mHO2 is 110 + 5 * 2 = 120. Returns None where the name contains no
-    music.
-    """
-    music = re.search(r"_m([A-Z]{2})(\d)(?:_|\.|$)", name)
-    if music is None:
-        return None
-    start, step = (110.0, 5.0) if music[1] == "HO" else (80.0, 10.0)
-    return start + step * int(music[2])
+    return Keypoints(positions - [0.0, floor, 0.0], floor, path.name)
 
 
 def _short(value: object) -> str:

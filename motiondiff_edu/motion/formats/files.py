@@ -112,9 +112,7 @@ def read_motions(folder: str | Path) -> list[Motion]:
 
 @registry.readers.register(".bvh")
 def read_bvh_motion(
-    path: Path,
-    mapping: Mapping[str, str] | None = None,
-    file_fps: float | int | None = None,
+    path: Path, mapping: Mapping[str, str] | None = None, file_fps: float | int | None = None
 ) -> Motion:
     """Any humanoid BVH, retargeted; the figure keeps its place in the world.  Raises BvhError."""
     clip = load_clip(path, mapping, file_fps)

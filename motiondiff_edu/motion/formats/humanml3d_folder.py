@@ -42,16 +42,6 @@ class Described(NamedTuple):
     captions: tuple[Caption, ...]
 
 
-def is_mirrored(name: str) -> bool:
-    """Whether this is the name of a mirrored clip, such as M000021."""
-    return name.startswith("M")
-
-
-def recording_of(name: str) -> str:
-    """The recording behind a clip: 000021 for 000021 and M000021, which belong in one split."""
-    return name.removeprefix("M")
-
-
 def read_captions(path: str | Path) -> list[Caption]:
     """The captions of a text file, one a line: caption#tokens#start#end, times in seconds.
 
@@ -155,7 +145,8 @@ def read_clips(
         names = sorted({path.stem for place in places for path in place.glob("*.npy")})
     else:
         names = split_names(folder / f"{split}.txt")
-    return _clips(places, texts, [name for name in names if mirrored or not is_mirrored(name)])
+    wanted = [name for name in names if mirrored or not name.startswith("M")]  # as in M000021
+    return _clips(places, texts, wanted)
 
 
 def _clips(places: list[Path], texts: Path, names: list[str]) -> Iterator[Described]:

@@ -51,7 +51,7 @@ def motion_of_keypoints(
     _refuse_no_figure(figure, sources, source)
     mapping = {joint: " + ".join(of) for joint, of in sources.items()}
     found = Figure(figure, fps, source=source, up=up, right_rate="correct the `fps` of the file")
-    clip = retarget_figure(found, info={"mapping": mapping})
+    clip = retarget_figure(found, {"mapping": mapping})
     return Motion.of_clip(clip, clip.info["start"])
 
 

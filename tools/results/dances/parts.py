@@ -56,8 +56,8 @@ from .songs import (
 )
 
 LONG = (200, 400)
-WAYS: dict[str, dict] = {  # options of `dance_mel`; guidance 1 is none
-    **{f"guided.{weight}": {"guidance": weight} for weight in (1, 2, 4)},
+WAYS: dict[str, dict] = {  # options of `dance_mel`; guidance 1 is none, and `dancer` has 4
+    **{f"guided.{weight}": {"guidance": weight} for weight in (1, 2)},
     **{f"steps{n}": {"steps": n} for n in (10, MORE_STEPS)},
 }
 FINISHED = ("bas_share", "speed_over_data", "skating_mps", "bone_rmse_cm")
@@ -124,7 +124,7 @@ class Stage:
         return judge_of(dances[:, 0], taught)
 
     def dancer(self, name: str) -> Dancer:
-        return checkpoints.load_dancer(self.weights[name])
+        return checkpoints.load(self.weights[name])
 
     def data_rows(self, frames: int) -> dict[str, np.ndarray]:
         return rows_of(self.songs.truth[:, 0, :frames][None], self.songs.beats(frames))

@@ -35,10 +35,7 @@ FAULTS = ("arm", "leg", "frames", "bursts")
 
 def draw(records: dict[str, dict], folder: Path) -> None:
     """Write each picture whose records are there."""
-    for name, make in (
-        ("repairs", repairs),
-        ("inbetween", in_betweens),
-    ):
+    for name, make in (("repairs", repairs), ("inbetween", in_betweens)):
         try:
             figure = make(records)
         except KeyError:

@@ -149,11 +149,7 @@ def measured_alone(task: Task) -> dict[str, float]:
 
 
 def inbetween_records(
-    inbetweener: Inbetweener,
-    weights: str,
-    size: RecordedSize,
-    command: str,
-    each: Callable = map,
+    inbetweener: Inbetweener, weights: str, size: RecordedSize, command: str, each: Callable = map
 ) -> list[dict]:
     """The measures of in-betweens (`real.inbetween_*`), at other distances `real.gapN.`.
 

@@ -26,7 +26,7 @@ class RecordedSize:
     samples: int = 10
 
 
-FULL, QUICK = RecordedSize(), RecordedSize(files=3, each=1, samples=2)
+FULL, QUICK = RecordedSize(), RecordedSize(files=5, each=1, samples=2)
 
 
 def trials() -> list[Path]:

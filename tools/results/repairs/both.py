@@ -87,10 +87,7 @@ def both_measures(
                 repaired(walker, few, broken, size, masked_way_back),
                 few.past,
             ),
-            "masked": (
-                masked(dancer, world, known, size.samples)[:, :, :T_h],
-                world[:, :T_h],
-            ),
+            "masked": (masked(dancer, world, known, size.samples)[:, :, :T_h], world[:, :T_h]),
             "masked_blended": (
                 masked(dancer, world, known, size.samples, corrected)[:, :, :T_h],
                 world[:, :T_h],
@@ -105,7 +102,7 @@ def both_measures(
 
 def both_records(bench: Bench, dancer: Dancer, size: RepairSize, command: str) -> list[dict]:
     """The measures as records."""
-    walker = checkpoints.load_walker(bench.weights[WALKER])
+    walker = checkpoints.load(bench.weights[WALKER])
     seeds = {"data": UNSEEN, "clips": CLIPS, "samples": size.samples, "rounds": size.rounds}
     seeds |= {
         "weights": [weights_digest(bench.weights[name]) for name in (WALKER, "unconditional")]

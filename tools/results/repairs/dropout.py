@@ -88,7 +88,7 @@ def dropout_measures(pairs: Comparison, trials: Trials, weights: dict[str, Path]
     """Gains, the errors of both sides with and without faults, and the cost."""
     found = {}
     for side, names in (("plain", pairs.plain), ("dropout", pairs.dropout)):
-        walkers = [checkpoints.load_walker(weights[name]) for name in names]
+        walkers = [checkpoints.load(weights[name]) for name in names]
         for past, share in (("complete", 0.0), ("missing", SHARE)):
             made = measured(walkers, trials, share)
             found |= {f"{side}_{past}_{row}": values for row, values in made.items()}

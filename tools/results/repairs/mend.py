@@ -25,7 +25,7 @@ def records(bench: Bench, size: RepairSize, command: str) -> list[dict]:
     """
     trials, weights = bench.trials, bench.weights
     best, pairs = (
-        [checkpoints.load_walker(weights[name]) for name in names]
+        [checkpoints.load(weights[name]) for name in names]
         for names in (["walker"], names_of("dropout"))
     )
     pasts = unseen(size.pasts, PAST_S)

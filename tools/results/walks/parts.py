@@ -93,7 +93,7 @@ class Bench:
         key = f"{weights_digest(path)}-{steps}-{hold}-{what}-{size}-{inputs}-{code_digest()}"
         kept = CACHE / f"{name}-{hashlib.sha256(key.encode()).hexdigest()[:12]}.npy"
         if not kept.exists():
-            generate = walker_generate(checkpoints.load_walker(path), steps, hold)
+            generate = walker_generate(checkpoints.load(path), steps, hold)
             asked = self.trials if what == "walks" else self.choices
             new = (
                 rollouts_of(generate, asked)
@@ -203,7 +203,7 @@ def as_record(
 @cache
 def _about_weights(path: Path) -> dict:
     """The digest of a walker's weights, the size of its network, and how long it was trained."""
-    walker = checkpoints.load_walker(path)
+    walker = checkpoints.load(path)
     recipe = walker.card.get("recipe", {})
     about = {"weights": weights_digest(path), "network": size_of_network(walker.config)}
     return about | {"trained_steps": recipe.get("steps"), "rate": recipe.get("lr")}

@@ -192,7 +192,7 @@ CLEANED = {
     "cleanup_moves_toes_cm": Kind("cm", ("toes_moved",), lambda far: 100 * far.mean()),
 }
 FINISHED = CLEANED | {
-    "finished_adherence_excess_mps": Kind("m/s", ("adherence_clean", "adherence_data"), excess),
+    "finished_adherence_excess_mps": Kind("m/s", ("adherence_clean", "adherence_data"), excess)
 }
 DIVERSITY = {
     "diversity_m": Kind("m", ("own",), np.mean),

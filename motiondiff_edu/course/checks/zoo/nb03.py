@@ -287,5 +287,5 @@ OTHERS = {
         "now and then exchanged": lambda x, eps_hat, now, then, eta, z: _leap(
             x, eps_hat, then, now, _variance(then, now, eta) if then < 1 else 0.0, z
         ),
-    },
+    }
 }

@@ -12,7 +12,7 @@ from jaxtyping import Float, Int
 
 from ...directions import least_turn
 from ...kinematics import forward_kinematics
-from ...skeleton import BONES, HIPS, JOINTS, OFFSETS, PARENTS, joint_index
+from ...skeleton import HIPS, JOINTS, OFFSETS, PARENTS, joint_index
 
 # Three joints of length zero, as in capture files: with them, spine and collars turn independently
 # of hips and neck.
@@ -86,12 +86,8 @@ def fit(positions: Float[np.ndarray, "T 21 3"]) -> Fit:
     least-squares rotation (Kabsch). A joint with a single child turns by the smallest rotation from
     its parent, so that no twist is added.
     """
-    lengths = np.array(
-        [np.median(np.linalg.norm(positions[:, c] - positions[:, p], axis=-1)) for p, c in BONES]
-    )
-    deviation = np.array(
-        [np.std(np.linalg.norm(positions[:, c] - positions[:, p], axis=-1)) for p, c in BONES]
-    )
+    bones = np.linalg.norm(positions[:, 1:] - positions[:, PARENTS[1:]], axis=-1)
+    lengths, deviation = np.median(bones, axis=0), bones.std(axis=0)
     names, parents, offsets = hierarchy(scaled_offsets(lengths))
     turns, points = global_turns(positions, names, parents, offsets)
     local = turns.copy()

@@ -18,10 +18,8 @@ from jaxtyping import Bool, Float, Int
 
 from ...kinematics import euler_to_matrix, forward_kinematics
 from .frames import frame_rows, frame_time, header, rate
-from .hierarchy import Node, read_nodes
-from .tokens import BvhError, read_lines, statements
-
-__all__ = ["Bvh", "BvhError", "read_bvh"]
+from .hierarchy import read_nodes
+from .tokens import read_lines, statements
 
 
 @dataclass(frozen=True)
@@ -93,11 +91,8 @@ class Bvh:
                 places[:, node, "XYZ".index(axis)] = self.frames[:, column]
         return places
 
-    def world_positions(self, end_sites: bool = True) -> Float[np.ndarray, "T N 3"]:
-        """World positions of the nodes in every frame, in the file's units.
-
-        `end_sites=False` leaves out the end sites.
-        """
+    def world_positions(self) -> Float[np.ndarray, "T N 3"]:
+        """World positions of the nodes in every frame, in the file's units."""
         places = self.local_positions()
         positions, turns = forward_kinematics(
             self.local_rotations(), places[:, 0], self.offsets, self.parents
@@ -108,7 +103,7 @@ class Bvh:
                 positions[:, node] = positions[:, parent] + np.einsum(
                     "tij,tj->ti", turns[:, parent], places[:, node]
                 )
-        return positions if end_sites else positions[:, ~self.is_end]
+        return positions
 
     def rest_positions(self) -> Float[np.ndarray, "N 3"]:
         """Positions with all angles zero: the pose that the offsets draw."""
@@ -129,13 +124,6 @@ def read_bvh(path: str | Path, file_fps: float | int | None = None) -> Bvh:
     seconds = frame_time(time, time_line, path, None if file_fps is None else float(file_fps))
     columns = [(node.name, channel) for node in nodes for channel in node.channels or ()]
     frames = frame_rows(lines, first, declared, columns, path, declared_line)
-    return assemble(nodes, frames, seconds, Path(path).stem or Path(path).name)
-
-
-def assemble(
-    nodes: list[Node], frames: Float[np.ndarray, "T K"], seconds: float, source: str
-) -> Bvh:
-    """Assemble the Bvh from its parts."""
     return Bvh(
         names=tuple(node.name for node in nodes),
         parents=np.array([node.parent for node in nodes]),
@@ -144,5 +132,5 @@ def assemble(
         frames=frames,
         frame_time=seconds,
         is_end=np.array([node.end for node in nodes]),
-        source=source,
+        source=Path(path).stem or Path(path).name,
     )

@@ -6,6 +6,7 @@ agree. Three joints of length zero (LowerBack, LeftShoulder, RightShoulder) let 
 turn freely, as in files of the CMU library.
 """
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -51,9 +52,7 @@ def write_bvh(
     fitted = fit(positions)
     with replacing(path) as aside:
         aside.write_text(text(fitted, float(fps)), encoding="ascii", newline="\n")
-    report = FitReport(
-        fitted.report.positions, fitted.report.shift_mm, fitted.report.bone_mm, path.name
-    )
+    report = replace(fitted.report, path=path.name)
     print(report)
     return report
 
