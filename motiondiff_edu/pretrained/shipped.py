@@ -47,9 +47,10 @@ def inbetween(
     On a motion unlike those of the training a network can fail, and the figure jumps, sinks or
     folds. If a result moves much faster or lower than the given frames require, if its hips or
     shoulders come together, or its feet glide, it is drawn again there, and what is too fast or too
-    low at last nearer to the lines between keyframes (`editing.plausible`). A MotionWarning says so, except of a
-    fold or a glide that another draw mended; and one says where keyframes are farther apart than
-    any in the training. The samples of a smaller number are the first ones of a larger number.
+    low at last nearer to the lines between keyframes (`editing.plausible`). A MotionWarning says
+    so, except of a fold or a glide that another draw mended; and one says where keyframes are
+    farther apart than any in the training. The samples of a smaller number are the first ones of a
+    larger number.
     Raises MotionError or ValueError if motion, mask or numbers do not fit.
     Source: MoFusion 4.4.  Notebook: 15
     """
