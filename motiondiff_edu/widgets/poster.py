@@ -79,20 +79,30 @@ def camera_at(
     return camera.at(*around[:, [0, 2]].mean(0))
 
 
-def floor_lines(camera: body.Camera, reach: int = 5) -> Iterator[tuple[np.ndarray, float]]:
+def floor_lines(
+    camera: body.Camera, reach: int = 5
+) -> tuple[Float[np.ndarray, "N 2 3"], Float[np.ndarray, "N"]]:
     """Segments of a 1 m grid around the camera's target; their strength 1..0 fades outwards."""
-    centre = np.round([camera.x, camera.z])
-    for i in range(-reach, reach + 1):
-        for k in range(-reach, reach):
-            for ends in ([(i, k), (i, k + 1)], [(k, i), (k + 1, i)]):
-                ground = centre + np.array(ends, dtype=float)
-                away = np.linalg.norm(ground.mean(0) - [camera.x, camera.z]) / reach
-                if away < 1:
-                    yield np.insert(ground, 1, 0.0, axis=1), float(1 - away**2)
+    rows = np.arange(-reach, reach + 1)
+    starts = np.stack(np.meshgrid(rows, rows[:-1], indexing="ij"), -1).reshape(-1, 2)
+    along_z = np.stack([starts, starts + [0, 1]], axis=1)
+    ground = np.stack([along_z, along_z[..., ::-1]], axis=1).reshape(-1, 2, 2)
+    ground = np.round([camera.x, camera.z]) + ground
+    away = np.linalg.norm(ground.mean(1) - [camera.x, camera.z], axis=-1) / reach
+    near = away < 1
+    return _floor_points(ground[near]), 1 - away[near] ** 2
 
 
 def _floor_points(xz: np.ndarray) -> np.ndarray:
-    return np.insert(np.asarray(xz, dtype=np.float64), 1, 0.0, axis=1)
+    return np.insert(np.asarray(xz, dtype=np.float64), 1, 0.0, axis=-1)
+
+
+def _in_sight(points: np.ndarray, camera: body.Camera, size: tuple) -> tuple[np.ndarray, ...]:
+    """The pixels of points, and whether they lie before the camera."""
+    right, up, ahead = camera.axes()
+    depth = (points - [camera.x, camera.height, camera.z]) @ ahead + camera.distance
+    pixels, _ = body.project(points, camera, size)
+    return np.clip(pixels, -9 * size[0], 9 * size[0]), depth > 0.3
 
 
 def _line(
@@ -103,13 +113,8 @@ def _line(
     colour: str,
     width: int,
 ):
-    if len(points) < 2:
-        return
-    right, up, ahead = camera.axes()
-    depth = (points - [camera.x, camera.height, camera.z]) @ ahead + camera.distance
-    pixels, _ = body.project(points, camera, size)
-    pixels = np.clip(pixels, -9 * size[0], 9 * size[0])
-    for i in np.flatnonzero((depth[1:] > 0.3) & (depth[:-1] > 0.3)):
+    pixels, there = _in_sight(points, camera, size)
+    for i in np.flatnonzero(there[1:] & there[:-1]):
         pen.line([*pixels[i], *pixels[i + 1]], fill=colour, width=width)
 
 
@@ -117,8 +122,11 @@ def _ground(
     pen: ImageDraw.ImageDraw, figure: Figure, t: int, camera: body.Camera, size: tuple
 ) -> None:
     """Floor grid, given path, trail of the root, marks under planted feet."""
-    for segment, strength in floor_lines(camera):
-        _line(pen, segment, camera, size, body.mix(GROUND, LINE, 0.55 * strength), SMOOTH)
+    segments, strengths = floor_lines(camera)
+    pixels, there = _in_sight(segments, camera, size)
+    for i in np.flatnonzero(there.all(1)):
+        colour = body.mix(GROUND, LINE, 0.55 * strengths[i])
+        pen.line(pixels[i].ravel().tolist(), fill=colour, width=SMOOTH)
     if figure.path is not None:
         _line(pen, _floor_points(figure.path), camera, size, body.PATH_COLOUR, 2 * SMOOTH)
     trail = _floor_points(figure.positions[max(0, t - TRAIL) : t + 1, 0][:, [0, 2]])
