@@ -22,8 +22,7 @@ Notebook: 08 (bones), 14
 """
 
 import numpy as np
-import scipy.ndimage
-import scipy.signal
+import scipy
 from jaxtyping import Bool, Float
 
 from ..motion.check import check_finite
