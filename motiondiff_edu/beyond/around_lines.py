@@ -1,4 +1,4 @@
-"""In-betweens around straight lines: the network is shown what is given, and generates the rest.
+"""In-betweens around lines: the network is shown what is given, and generates the rest.
 
     remainder = (x0 - lines) / scale      x0_hat = lines + scale * remainder_hat
 Lines go straight from each given entry to the next. `scale` is how far a motion usually is from

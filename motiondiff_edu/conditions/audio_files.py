@@ -189,7 +189,7 @@ def _decode(path: Path) -> tuple[Float[np.ndarray, "N channels"], int, str]:
             try:
                 channels = file.read(dtype="float32", always_2d=True)
             except soundfile.LibsndfileError:
-                return (_in_blocks(path), file.samplerate, "is damaged: the rest cannot be read")
+                return _in_blocks(path), file.samplerate, "is damaged: the rest cannot be read"
             return channels, file.samplerate, _lost(file, len(channels))
     except soundfile.LibsndfileError as error:
         raise AudioError(f"{path.name} {_other_kind(path, error)}") from None

@@ -128,8 +128,9 @@ class Inbetweener(Performer):
         columns = columns.to(device).expand(samples, -1, -1)
         r_S = draw(given, generator)
         lines = self.model.lines(given, columns, activity_at_most=USED_AT_MOST)
-        round_ = self.motion_scaler.transform(lines_round(features, known).to(device))
-        lines = replace(lines, lines=round_.where(columns.any(1, keepdim=True), 0.0))
+        turning = self.motion_scaler.transform(lines_round(features, known).to(device))
+        # a column that is given nowhere has the mean, which is 0 in these units and not in metres
+        lines = replace(lines, lines=turning.where(columns.any(1, keepdim=True), 0.0))
         known_remainder = torch.zeros_like(given)
         loop = inpaint_steps(
             self.denoiser(lines), r_S, self.schedule, known_remainder, columns, steps=steps,

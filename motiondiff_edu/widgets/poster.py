@@ -99,7 +99,7 @@ def _floor_points(xz: np.ndarray) -> np.ndarray:
 
 def _in_sight(points: np.ndarray, camera: body.Camera, size: tuple) -> tuple[np.ndarray, ...]:
     """The pixels of points, and whether they lie before the camera."""
-    right, up, ahead = camera.axes()
+    *_, ahead = camera.axes()
     depth = (points - [camera.x, camera.height, camera.z]) @ ahead + camera.distance
     pixels, _ = body.project(points, camera, size)
     return np.clip(pixels, -9 * size[0], 9 * size[0]), depth > 0.3
