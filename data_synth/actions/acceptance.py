@@ -26,10 +26,11 @@ PAIR_SECONDS = 10.0
 
 
 def joins(seed: int = 0) -> dict[tuple[str, str], Acted]:
-    """A clip for every ordered pair of acts of the legs."""
+    """A clip for every ordered pair of acts of the legs that can follow one another."""
     return {
         (a.verb, b.verb): act_out((Phrase(a), Phrase(b)), PAIR_SECONDS, seed)
         for a, b in product(LEGS, LEGS)
+        if b.verb != ("sit" if a.verb == "sit" else "rise") or (a.verb, b.verb) == ("sit", "rise")
     }
 
 

@@ -33,6 +33,9 @@ class Verb:
 
     kind    "way" (the legs travel or stand), "spot" (the legs act where they are) or "arms"
     period  seconds of one time, when nothing is said of the speed; of "way" the shortest duration
+
+    Who sits down stays there until "rise", or until the legs do something else. A sentence that
+    begins with "rise" begins on a seat.
     """
 
     kind: str
@@ -45,6 +48,7 @@ class Verb:
 
 ANY_SPEED = ("", "slowly", "quickly")
 ONE_SIDE = ("left", "right")
+ANY_SIDE = (*ONE_SIDE, "both")
 VERBS: dict[str, Verb] = {
     "walk": Verb("way", 1.8, speeds=ANY_SPEED),
     "run": Verb("way", 1.8, speeds=("", "quickly")),
@@ -55,10 +59,12 @@ VERBS: dict[str, Verb] = {
     "squat": Verb("spot", 1.35, most=MOST, speeds=ANY_SPEED),
     "jump": Verb("spot", 1.0, most=MOST, directions=("", "forward")),
     "kick": Verb("spot", 1.35, ONE_SIDE, MOST, ANY_SPEED),
-    "sit": Verb("spot", 3.0, speeds=("", "slowly")),
+    "sit": Verb("spot", 1.5, speeds=("", "slowly")),
+    "rise": Verb("spot", 1.3, speeds=("", "slowly")),
     "bow": Verb("spot", 1.7, most=MOST, speeds=ANY_SPEED),
-    "wave": Verb("arms", 2.2, ONE_SIDE, speeds=ANY_SPEED),
-    "raise": Verb("arms", 1.6, (*ONE_SIDE, "both"), MOST, ANY_SPEED),
+    "wave": Verb("arms", 2.2, ANY_SIDE, speeds=ANY_SPEED),
+    "raise": Verb("arms", 1.6, ANY_SIDE, MOST, ANY_SPEED),
+    "hold": Verb("arms", 2.2, ANY_SIDE),  # an arm up, for as long as the phrase lasts
     "punch": Verb("arms", 0.8, ONE_SIDE, MOST, ANY_SPEED),
     "clap": Verb("arms", 0.65, most=MOST, speeds=ANY_SPEED),
     "point": Verb("arms", 1.9, ONE_SIDE, directions=("forward", "aside")),
@@ -111,3 +117,21 @@ def check(act: Act, kinds: tuple[str, ...]) -> None:
 def mirrored(act: Act | None) -> Act | None:
     """The same act with left and right exchanged."""
     return act and replace(act, side=OTHER_SIDE.get(act.side, act.side))
+
+
+def seated(sentence: Sentence) -> tuple[bool, ...]:
+    """Whether the figure sits when each phrase begins, and at the end of the sentence.
+
+    Raises ValueError where a figure that stands gets up, or one that sits sits down.
+    """
+    legs = [phrase.legs.verb for phrase in sentence if phrase.legs]
+    now = bool(legs) and legs[0] == "rise"
+    found = [now]
+    for phrase in sentence:
+        if phrase.legs is not None:
+            verb = phrase.legs.verb
+            if verb == ("sit" if now else "rise"):
+                raise ValueError(f"a figure that {'sits' if now else 'stands'} cannot {verb}")
+            now = verb == "sit"
+        found.append(now)
+    return tuple(found)

@@ -1,4 +1,4 @@
-"""Acts of the arms: wave, raise, punch, clap and point, over whatever the legs do.
+"""Acts of the arms: wave, raise, hold, punch, clap and point, over whatever the legs do.
 
 An arm's pose is (swing ahead, out to the side, twist inward, elbow, wrist) in degrees, seen from
 the shoulders. The acts lay a curve of poses over the arms of a motion that exists already.
@@ -70,6 +70,13 @@ def raise_arm(one: TimedArms, side: str, rng: np.random.Generator) -> Keys:
     return keys
 
 
+def hold(one: TimedArms, side: str, rng: np.random.Generator) -> Keys:
+    """The straight arm goes up and stays there."""
+    top = tuple(np.add(UP, (rng.uniform(-14, 6), rng.uniform(-4, 14), 0, rng.uniform(-4, 10), 0)))
+    return [(one.first, HANGING), (one.first + RISE, top), (one.last - RISE, top),
+            (one.last, HANGING)]  # fmt: skip
+
+
 def punch(one: TimedArms, side: str, rng: np.random.Generator) -> Keys:
     """From the guard straight ahead and back, each time."""
     keys = [(one.first, READY)]
@@ -99,6 +106,7 @@ def point(one: TimedArms, side: str, rng: np.random.Generator) -> Keys:
 WRITERS: dict[str, Callable[[TimedArms, str, np.random.Generator], Keys]] = {
     "wave": wave,
     "raise": raise_arm,
+    "hold": hold,
     "punch": punch,
     "clap": clap,
     "point": point,

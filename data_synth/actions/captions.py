@@ -22,18 +22,16 @@ from .acts import OTHER_SIDE, VERBS, Act, Phrase, Sentence
 class Wording:
     """A verb in the third person and as a gerund, with what follows it.
 
-    `{side}` and `{limb}` stand for the words of the act. `gerund_tail` is what follows the gerund,
-    where that is something else.
+    `{side}`, `{hand}` and `{limb}` stand for the words of the act: left, the left hand, the left
+    arm; or both, both hands, both arms.
     """
 
     third: str
     gerund: str
     tail: str = ""
-    gerund_tail: str = ""
 
 
-def _w(third: str, gerund: str, tail: str = "", gerund_tail: str = "") -> Wording:
-    return Wording(third, gerund, tail, gerund_tail or tail)
+_w = Wording
 
 
 # verb and direction -> wordings; the last one is held out
@@ -116,11 +114,18 @@ WORDINGS: dict[tuple[str, str], tuple[Wording, ...]] = {
         _w("strikes", "striking", "out with the {side} foot"),
     ),
     ("sit", ""): (
-        _w("sits", "sitting", "down and gets up again", "down and getting up again"),
-        _w("sits", "sitting", "down and stands up", "down and standing up"),
-        _w("takes", "taking", "a seat and gets up", "a seat and getting up"),
-        _w("sits", "sitting", "on a chair and stands up", "on a chair and standing up"),
-        _w("settles", "settling", "on a chair and rises", "on a chair and rising"),
+        _w("sits", "sitting", "down"),
+        _w("sits", "sitting", "down on a chair"),
+        _w("takes", "taking", "a seat"),
+        _w("sits", "sitting"),
+        _w("settles", "settling", "on a chair"),
+    ),
+    ("rise", ""): (
+        _w("gets", "getting", "up"),
+        _w("stands", "standing", "up"),
+        _w("gets", "getting", "up from the chair"),
+        _w("stands", "standing", "up from a chair"),
+        _w("rises", "rising"),
     ),
     ("bow", ""): (
         _w("bows", "bowing"),
@@ -130,11 +135,11 @@ WORDINGS: dict[tuple[str, str], tuple[Wording, ...]] = {
         _w("stoops", "stooping"),
     ),
     ("wave", ""): (
-        _w("waves", "waving", "with the {side} hand"),
-        _w("waves", "waving", "the {side} hand"),
-        _w("waves", "waving", "the {side} arm"),
-        _w("greets", "greeting", "with the {side} hand"),
-        _w("signals", "signalling", "with the {side} hand"),
+        _w("waves", "waving", "with {hand}"),
+        _w("waves", "waving", "{hand}"),
+        _w("waves", "waving", "{limb}"),
+        _w("greets", "greeting", "with {hand}"),
+        _w("signals", "signalling", "with {hand}"),
     ),
     ("raise", ""): (
         _w("raises", "raising", "{limb}"),
@@ -142,6 +147,13 @@ WORDINGS: dict[tuple[str, str], tuple[Wording, ...]] = {
         _w("puts", "putting", "{limb} up"),
         _w("reaches", "reaching", "up with {limb}"),
         _w("stretches", "stretching", "{limb} upwards"),
+    ),
+    ("hold", ""): (
+        _w("holds", "holding", "{limb} up"),
+        _w("keeps", "keeping", "{limb} raised"),
+        _w("holds", "holding", "{limb} in the air"),
+        _w("keeps", "keeping", "{limb} up"),
+        _w("has", "having", "{limb} overhead"),
     ),
     ("punch", ""): (
         _w("punches", "punching", "with the {side} hand"),
@@ -183,6 +195,7 @@ ADVERBS = {
     "slowly": ("slowly", "at a slow pace", "at a gentle pace"),
     "quickly": ("quickly", "fast", "at a quick pace"),
 }
+HELD = ("with {limb} raised", "with {limb} up", "with {limb} in the air")
 ONE_WORD = ("slowly", "quickly")  # adverbs that may stand before the verb
 
 
@@ -221,13 +234,14 @@ def act_words(act: Act, chosen: Choices, held_out: bool) -> tuple[str, str]:
     times = chosen.one(f"{act.verb} times", TIMES[act.count]) if VERBS[act.verb].most > 1 else ""
     speed = chosen.one(f"{act.verb} speed", ADVERBS[act.speed]) if act.speed else ""
     limb = "both arms" if act.side == "both" else f"the {act.side} arm"
+    hand = "both hands" if act.side == "both" else f"the {act.side} hand"
     before = ""
     if speed in ONE_WORD and chosen.share(f"{act.verb} before") < 0.4:
         before, speed = speed, ""
     place = chosen.share(f"{act.verb} place")
     forms = []
-    for verb, tail in ((wording.third, wording.tail), (wording.gerund, wording.gerund_tail)):
-        tail = tail.format(side=act.side, limb=limb)
+    for verb in (wording.third, wording.gerund):
+        tail = wording.tail.format(side=act.side, limb=limb, hand=hand)
         after = [tail, times, speed]
         if times and speed and place < 0.5:
             after = [tail, speed, times]
@@ -243,6 +257,13 @@ def _phrase(phrase: Phrase, chosen: Choices, held_out: bool) -> tuple[str, str]:
     if len(words) == 1:
         return words[0]
     first, second = words if chosen.share("which first") < 0.7 else words[::-1]
+    if phrase.arms is not None and phrase.arms.verb == "hold" and not held_out:
+        arms = phrase.arms
+        limb = "both arms" if arms.side == "both" else f"the {arms.side} arm"
+        held = chosen.one("held", (*HELD, ""))
+        if held:
+            third, gerund = (f"{form} {held.format(limb=limb)}" for form in words[0])
+            return third, gerund
     third = f"{first[0]} while {second[1]}"
     if chosen.share("at once") < 0.3:
         third = f"{first[0]} and at the same time {second[0]}"
@@ -281,7 +302,7 @@ def vocabulary(held_out: bool = False) -> set[str]:
     for choices in WORDINGS.values():
         for one in choices if held_out else choices[:-1]:
             texts += [one.third, one.gerund, base(one.third)]
-            texts += [tail.format(side="", limb="") for tail in (one.tail, one.gerund_tail)]
+            texts.append(one.tail.format(side="", limb="", hand="hands"))
     return {word for text in texts for word in words_of(text)}
 
 

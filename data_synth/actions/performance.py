@@ -10,14 +10,17 @@ from motiondiff_edu.motion.root_frame import FPS
 from ..dancing.curves import least_jerk
 from ..walking.footsteps import TOE_AHEAD
 from . import arms, spot, way
-from .acts import FACTORS, UNEVEN, VERBS, Act, Phrase, Sentence
+from .acts import FACTORS, UNEVEN, VERBS, Act, Phrase, Sentence, seated
 from .join import crossfade
 from .way import Piece, Standing
 
 JOIN = 0.4  # seconds of a join
-STOPPING = {"run": 2.4, "walk": 1.6}  # seconds that an act on the way needs to come to rest
-OTHERS_STOP = 1.4
-STAND = Act("stand")
+STOPPING = {"run": 1.7, "walk": 1.1}  # seconds that an act on the way needs to come to rest
+OTHERS_STOP = 1.0
+STAND, STAY = Act("stand"), Act(spot.STAY)
+WHILE_IT_LASTS = ("wave", "point", "hold")  # acts of the arms that fill their phrase
+SITS = (0.5, 1.4)  # seconds that a figure stays on a chair at least
+CARRIED = {"run": 0.26, "walk": 0.14}  # metres that a jump goes on after it
 TRIES = 8  # each with more time for the stops
 
 
@@ -47,21 +50,26 @@ class Acted:
 
 @dataclass(frozen=True)
 class Slot:
-    """A phrase with its duration and the periods of its acts, in seconds."""
+    """A phrase with its duration and the periods of its acts, in seconds.
+
+    `otherwise` is what the legs do, if nothing is said of them: they stand, or stay on the chair.
+    `wait`: seconds before an act on the spot that is the first of a clip.
+    """
 
     phrase: Phrase
     seconds: float
     legs_period: float = 0.0  # of an act on the spot
     arms_period: float = 0.0
+    otherwise: Act = STAND
+    wait: float = 0.0
 
     @property
     def legs(self) -> Act:
-        """What the legs do; if nothing is said of them, they stand."""
-        return self.phrase.legs or STAND
+        return self.phrase.legs or self.otherwise
 
     @property
     def kind(self) -> str:
-        return VERBS[self.legs.verb].kind
+        return "spot" if self.legs == STAY else VERBS[self.legs.verb].kind
 
 
 Start = tuple[float, float, float]  # x, z (metres) and heading (radians) of a figure on its way
@@ -88,13 +96,15 @@ def _performed(sentence: Sentence, seconds: float, late: float, seed: int) -> tu
     `late`: seconds that the stops take beyond what is expected.
     """
     rng = np.random.default_rng([seed, 11])
-    slots = scheduled(sentence, seconds, late, rng)
+    sentence_done = with_rises(sentence)
+    slots = scheduled(sentence_done, seconds, late, rng)
     style = way.walker_of(rng)
     frames = round(seconds * FPS)
     blocks = _blocks(slots)
     made, at = None, 0
     spans: list[Span] = []
     state: Start | Standing = (0.0, 0.0, 0.0)
+    sits = seated(sentence_done)[0]
     for k, block in enumerate(blocks):
         room = frames - at if k == len(blocks) - 1 else None
         if block[0].kind == "way":
@@ -103,9 +113,12 @@ def _performed(sentence: Sentence, seconds: float, late: float, seed: int) -> tu
                 state = way.standing_at(piece, cut)
         else:
             standing = state if isinstance(state, Standing) else _first_stand(style, rng)
+            carried = CARRIED.get(blocks[k - 1][-1].legs.verb, 0.0) if k else 0.0
             # in a join the feet are those of the piece before: none may leave the floor in it
             rest = JOIN - spot.on_the_floor(block[0].legs, block[0].legs_period) if k else 0.0
-            piece, cut, inner, state = _on_the_spot(block, standing, room, seed, max(0.05, rest))
+            begins = max(0.05, rest), carried
+            piece, cut, inner, state = _on_the_spot(block, standing, room, seed, begins, sits)
+        sits = False
         spans += [Span(at / FPS + first, at / FPS + end, act) for first, end, act in inner]
         made = piece if made is None else _joined(made, piece, at, block[0].kind == "way")
         at += cut
@@ -120,13 +133,31 @@ def _performed(sentence: Sentence, seconds: float, late: float, seed: int) -> tu
     return Acted(positions, made.contacts[:frames], kept, sentence, seed), over
 
 
+def with_rises(sentence: Sentence) -> Sentence:
+    """The sentence in which a seated figure gets up before its legs do something else."""
+    made: list[Phrase] = []
+    for phrase, sits in zip(sentence, seated(sentence), strict=False):
+        if sits and phrase.legs is not None and phrase.legs.verb != "rise":
+            made.append(Phrase(Act("rise")))
+        made.append(phrase)
+    return tuple(made)
+
+
+def otherwise(sentence: Sentence) -> list[Act]:
+    """What the legs do in each phrase, if nothing is said of them."""
+    return [STAY if sits else STAND for sits in seated(sentence)]
+
+
 def stops(sentence: Sentence) -> float:
     """Seconds that the figure needs in all to come to rest before acts on the spot."""
-    legs = [(phrase.legs or STAND).verb for phrase in sentence]
+    legs = [
+        (phrase.legs or other).verb
+        for phrase, other in zip(sentence, otherwise(sentence), strict=False)
+    ]
     return sum(
         STOPPING.get(a, OTHERS_STOP)
         for a, b in zip(legs, legs[1:], strict=False)
-        if VERBS[a].kind == "way" and VERBS[b].kind == "spot"
+        if a in VERBS and VERBS[a].kind == "way" and VERBS[b].kind == "spot"
     )
 
 
@@ -140,7 +171,8 @@ def scheduled(
     """
     if not sentence:
         raise ValueError("a sentence needs a phrase at least")
-    slots = [_slot(phrase, rng) for phrase in sentence]
+    others = otherwise(sentence)
+    slots = [_slot(phrase, other, rng) for phrase, other in zip(sentence, others, strict=False)]
     left = seconds - sum(slot.seconds for slot in slots) - stops(sentence) - late
     if left < 0:
         raise ValueError(
@@ -148,27 +180,42 @@ def scheduled(
         )
     elastic = [k for k, s in enumerate(slots) if s.kind == "way" and s.legs.verb != "turn"]
     if not elastic:
-        before = Slot(Phrase(STAND), float(left * rng.uniform(0.05, 0.6)))
-        return [before, *slots] if before.seconds > 0.3 else slots
+        wait = float(left * rng.uniform(0.05, 0.6))
+        if slots[0].kind == "spot":
+            return [replace(slots[0], wait=wait), *slots[1:]]
+        return [Slot(Phrase(STAND), wait), *slots] if wait > 0.3 else slots
+    if others[-1] == STAY:  # who sits at the end sits for a while
+        share = float(rng.uniform(0.2, 0.6))
+        left *= 1 - share
+    if others[0] == STAY:
+        wait = float(left * rng.uniform(0.05, 0.4))
+        slots[0], left = replace(slots[0], wait=wait), left - wait
     shares = rng.dirichlet(np.full(len(elastic), 3.0))
     for k, share in zip(elastic, shares, strict=True):
         slots[k] = replace(slots[k], seconds=slots[k].seconds + float(left * share))
     return slots
 
 
-def _slot(phrase: Phrase, rng: np.random.Generator) -> Slot:
+def _slot(phrase: Phrase, other: Act, rng: np.random.Generator) -> Slot:
     """The least duration of a phrase, and the period of its acts."""
-    legs = phrase.legs or STAND
-    legs_period = arms_period = 0.0
-    if VERBS[legs.verb].kind == "spot":
+    legs = phrase.legs or other
+    legs_period = arms_period = need = 0.0
+    if legs == STAY:
+        pass
+    elif VERBS[legs.verb].kind == "spot":
         legs_period = period_of(legs, rng)
         need = legs.count * legs_period
+        if legs.verb == "sit":
+            need += float(rng.uniform(*SITS))
     else:
         need = way.least_seconds(legs)
     if phrase.arms is not None:
         arms_period = period_of(phrase.arms, rng)
-        need = max(need, phrase.arms.count * arms_period + arms.FADE)
-    return Slot(phrase, need, legs_period, arms_period)
+        lasts = phrase.arms.count * arms_period
+        if phrase.arms.verb in WHILE_IT_LASTS:
+            lasts = max(lasts, VERBS[phrase.arms.verb].period)  # a quick wave is no shorter one
+        need = max(need, lasts + arms.FADE)
+    return Slot(phrase, need, legs_period, arms_period, other)
 
 
 def period_of(act: Act, rng: np.random.Generator) -> float:
@@ -214,23 +261,28 @@ def _on_the_way(block: list[Slot], state, style, rng, room: int | None, seed: in
     piece = way.walked(control, state, style, seed, float(rng.random()))
     if room is not None:
         return piece, room, inner
-    cut = way.settled(piece, round((at - 0.1) * FPS), round(JOIN * FPS) + 1)
+    cut = way.settled(piece, round((at - 0.1) * FPS))
     inner = [(first, min(end, cut / FPS), act) for first, end, act in inner]
     return piece, cut, inner
 
 
-def _on_the_spot(block: list[Slot], standing: Standing, room: int | None, seed: int, at: float):
+def _on_the_spot(
+    block: list[Slot], standing: Standing, room: int | None, seed: int,
+    begins: tuple[float, float], sits: bool,
+):  # fmt: skip
     """(piece, frame at which the next block begins, spans within it, where the feet stand).
 
-    The first act begins `at` seconds after the block.
+    `begins`: seconds after the block at which the first act begins, and metres that it is carried.
     """
-    timed = []
+    timed: list[spot.Timed] = []
+    at, carried = begins
     for slot in block:
-        timed.append(spot.Timed(slot.legs, at, slot.legs_period))
+        at += slot.wait
+        timed.append(spot.Timed(slot.legs, at, slot.legs_period, 0.0 if timed else carried))
         at = timed[-1].last + max(0.0, slot.seconds - slot.legs.count * slot.legs_period)
     seconds = (room / FPS if room is not None else at) + JOIN + 0.2
-    piece, after = spot.acted(timed, standing, seconds, seed)
-    inner = [(one.first, one.last, one.act) for one in timed]
+    piece, after = spot.acted(timed, standing, seconds, seed, sits)
+    inner = [(one.first, one.last, one.act) for one in timed if one.act != STAY]
     return piece, int(np.ceil(at * FPS)), inner, after
 
 
@@ -253,9 +305,9 @@ def _arms(slots: list[Slot], spans: list[Span], rng) -> list[arms.TimedArms]:
     legs = iter(spans)
     for slot in slots:
         span = next(legs) if slot.phrase.legs is not None else None
-        first = span.first if span else clock
-        clock = span.last if span else clock + slot.seconds
-        if slot.legs.verb == "turn":  # after a turn the figure stands until the phrase ends
+        first = span.first if span else clock + slot.wait
+        clock = span.last if span else first + slot.seconds
+        if slot.kind == "spot" or slot.legs.verb == "turn":  # a phrase may last longer than its act
             clock = max(clock, first + slot.seconds)
         act = slot.phrase.arms
         if act is None:
@@ -264,7 +316,7 @@ def _arms(slots: list[Slot], spans: list[Span], rng) -> list[arms.TimedArms]:
         spare = max(0.0, clock - first - act.count * own - arms.FADE)
         begins = first + 0.5 * arms.FADE + spare * float(rng.uniform(0.1, 0.8))
         ends = begins + act.count * own
-        if act.verb in ("wave", "point"):
+        if act.verb in WHILE_IT_LASTS:
             begins = first + 0.5 * arms.FADE
             ends = clock - 0.5 * arms.FADE
         timed.append(arms.TimedArms(act, begins, own, ends))

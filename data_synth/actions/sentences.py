@@ -12,17 +12,21 @@ from functools import cache, partial
 import numpy as np
 
 from .acts import FACTORS as SPEED
-from .acts import MOST, ONE_SIDE, PHRASES, UNEVEN, VERBS, Act, Phrase, Sentence
-from .performance import JOIN, stops
+from .acts import MOST, ONE_SIDE, PHRASES, UNEVEN, VERBS, Act, Phrase, Sentence, seated
+from .performance import JOIN, SITS, WHILE_IT_LASTS, stops, with_rises
 from .way import least_seconds
 
 LEAST, LONGEST = 2.0, 10.0  # seconds of a clip
 MARGIN = 0.8  # seconds left over in every clip
+MOSTLY_SHORT = 1.6  # 1: as many long clips as short ones
 WAY, SPOT, ARMS = (
     tuple(name for name, verb in VERBS.items() if verb.kind == kind)
     for kind in ("way", "spot", "arms")
 )
-WITH_ARMS = (*WAY, "squat", "sit")  # acts of the legs that leave the arms free
+# acts of the legs and of the arms that one can do at once
+AT_ONCE = frozenset(
+    [(legs, one) for legs in (*WAY, "squat", "sit", "rise") for one in ARMS] + [("jump", "hold")]
+)
 KINDS = {"way": 0.2, "spot": 0.32, "arms": 0.18, "way and arms": 0.22, "spot and arms": 0.08}
 SEVERAL = (0.0, 0.45, 0.38, 0.17)  # shares of sentences with 0, 1, 2, 3 phrases
 HELD_OUT = 0.16  # share of the pairs that a training never sees
@@ -45,7 +49,7 @@ def draw(rng: np.random.Generator, seconds: float | None = None) -> tuple[Senten
     while True:
         n = int(rng.choice(PHRASES + 1, p=SEVERAL))
         form = tuple(_phrase(rng) for _ in range(n))
-        if any(a == b or _same_legs(a, b) for a, b in zip(form, form[1:], strict=False)):
+        if not _possible(form):
             continue
         fitting = fitted(form, LONGEST if seconds is None else seconds)
         if not fitting:
@@ -55,7 +59,8 @@ def draw(rng: np.random.Generator, seconds: float | None = None) -> tuple[Senten
         else:
             form = fitting[-1]
         need = max(LEAST, room(form))
-        length = float(rng.uniform(need, LONGEST)) if seconds is None else seconds
+        spare = (LONGEST - need) * float(rng.random()) ** MOSTLY_SHORT
+        length = need + spare if seconds is None else seconds
         return tuple(_counted(phrase, rng) for phrase in form), round(length, 1)
 
 
@@ -68,13 +73,22 @@ def fitted(form: Sentence, seconds: float) -> list[Sentence]:
     return [one for one in lowered if room(one) <= seconds]
 
 
-def _same_legs(a: Phrase, b: Phrase) -> bool:
-    return a.legs is not None and b.legs is not None and a.legs.verb == b.legs.verb
+def _possible(form: Sentence) -> bool:
+    """Whether no act follows itself, nobody gets up who stands, and nobody sits down on a seat."""
+    for a, b in zip(form, form[1:], strict=False):
+        if a == b or (a.legs is not None and b.legs is not None and a.legs.verb == b.legs.verb):
+            return False
+    try:
+        seated(form)
+    except ValueError:
+        return False
+    return True
 
 
 def room(form: Sentence) -> float:
     """Seconds that the sentence needs at most."""
-    return sum(_longest(phrase) for phrase in form) + stops(form) + MARGIN
+    whole = with_rises(form)
+    return sum(map(_longest, whole)) + stops(whole) + MARGIN
 
 
 def _longest(phrase: Phrase) -> float:
@@ -85,8 +99,10 @@ def _longest(phrase: Phrase) -> float:
         if verb.kind == "way":
             found.append(least_seconds(act))
         else:
-            slowest = act.count * SPEED[act.speed] * (1 + UNEVEN) * verb.period
-            found.append(slowest + (JOIN if verb.kind == "arms" else 0.0))
+            speed = max(1.0, SPEED[act.speed]) if act.verb in WHILE_IT_LASTS else SPEED[act.speed]
+            slowest = act.count * speed * (1 + UNEVEN) * verb.period
+            more = {"arms": JOIN, "sit": SITS[1]}
+            found.append(slowest + more.get(verb.kind, more.get(act.verb, 0.0)))
     return max(found)
 
 
@@ -96,11 +112,11 @@ def _phrase(rng: np.random.Generator) -> Phrase:
     legs = arms = None
     if kind.startswith("way"):
         legs = _act(str(rng.choice(WAY[:-1] if kind == "way" else WAY)), rng)
-    elif kind.startswith("spot"):
-        free = [verb for verb in SPOT if verb in WITH_ARMS]
-        legs = _act(str(rng.choice(SPOT if kind == "spot" else free)), rng)
     if kind.endswith("arms"):
         arms = _act(str(rng.choice(ARMS)), rng)
+    if kind.startswith("spot"):
+        free = [verb for verb in SPOT if arms is None or (verb, arms.verb) in AT_ONCE]
+        legs = _act(str(rng.choice(free)), rng)
     return Phrase(legs, arms)
 
 
@@ -170,7 +186,7 @@ def all_pairs() -> list[Pair]:
     for name, verb in VERBS.items():
         found += [("speed", name, word) for word in verb.speeds if word]
         found += [("direction", name, word) for word in verb.directions if word]
-    found += [("while", legs, arms) for legs in WITH_ARMS for arms in ARMS]
+    found += [("while", legs, arms) for legs, arms in sorted(AT_ONCE)]
     found += [("then", a, b) for a in VERBS for b in VERBS if a != b or VERBS[a].kind == "arms"]
     sided = [name for name, verb in VERBS.items() if "left" in verb.sides]
     found += [

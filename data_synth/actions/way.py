@@ -31,6 +31,7 @@ TURNS = {"": 90.0, "around": 180.0}  # degrees
 TURNING, SLOWEST_TURN = 1.75, 0.8  # rad/s
 RISE = (2.6, 1.6, 6.0)  # m/s^2 ahead and aside, rad/s^2
 SMOOTH = 0.12  # seconds
+SLOW, APART = 0.45, 0.42  # m/s and metres between the toes, where a walk has come to rest
 TAIL = 4.5  # seconds without control, within which a walk comes to rest
 
 
@@ -140,14 +141,17 @@ def walked(
     return Piece(world + shift, contacts[warm:])
 
 
-def settled(piece: Piece, least: int, frames: int) -> int:
-    """The first frame from `least` on after which both feet stay planted for `frames` frames.
+def settled(piece: Piece, least: int) -> int:
+    """The first frame from `least` on at which both feet stand, not far apart, and the body slows.
 
+    Whoever walks on would now close the feet, for a second and more; who acts on the spot need not.
     Raises ValueError when there is none.
     """
     both = np.asarray(piece.contacts.all(1))
-    for t in range(least, len(piece) - frames):
-        if both[t : t + frames].all():
+    speed = np.linalg.norm(np.diff(piece.positions[:, 0][:, [0, 2]], axis=0), axis=-1) * FPS
+    for t in range(least, len(piece) - 1):
+        toes = piece.positions[t, list(TOES)]
+        if both[t] and speed[t] < SLOW and np.linalg.norm(toes[0] - toes[1]) < APART:
             return t
     raise ValueError(f"the walk does not come to rest within {len(piece) / FPS:.1f} s")
 

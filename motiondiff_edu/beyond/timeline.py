@@ -7,17 +7,17 @@ A small network generates the timeline from the text, and the motion is generate
 (`performers/planned_mofusion.py`). Nobody has to give a timeline, but one can.
 
 Columns of a frame:
-    0:16   one for each verb, 1 while it is performed
-    16:18  the sides of legs and arms: 1 left, -1 right, 0 neither or both
-    18:20  the times still to come of what legs and arms do, or will do next, this time included
-    20:22  how far this time is: from 0 up to 1 in its middle, and down again
+    0:18   one for each verb, 1 while it is performed; of "sit", while the figure is on the seat
+    18:20  the sides of legs and arms: 1 left, -1 right, 0 neither or both
+    20:22  the times still to come of what legs and arms do, or will do next, this time included
+    22:24  how far this time is: from 0 up to 1 in its middle, and down again
 Gain: docs/RESULTS_ALL.md (`words-budget.no-timeline.*`).
 Ours; MoFusion generates the motion alone.
 Notebook: 16, 17
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy
@@ -28,14 +28,16 @@ from torch import Tensor
 from ..motion.cleanup import runs
 from ..motion.root_frame import FPS
 
-LEGS = ("walk", "run", "back", "aside", "turn", "stand", "squat", "jump", "kick", "sit", "bow")
-ARMS = ("wave", "raise", "punch", "clap", "point")
-WITH_TIMES = ("squat", "jump", "kick", "sit", "bow", *ARMS)  # the rest goes on until the next act
+LEGS = (
+    "walk", "run", "back", "aside", "turn", "stand", "squat", "jump", "kick", "sit", "rise", "bow"
+)  # fmt: skip
+ARMS = ("wave", "raise", "hold", "punch", "clap", "point")
+WITH_TIMES = ("squat", "jump", "kick", "rise", "bow", *ARMS)  # the rest goes on until the next act
 SIDES = {"left": 1.0, "right": -1.0}
 WORDS = {value: word for word, value in SIDES.items()}
 VERBS = LEGS + ARMS
 SIDE, TO_COME, MIDDLE = (len(VERBS) + 2 * k for k in range(3))  # of the legs; the arms come next
-D = MIDDLE + 2  # 22
+D = MIDDLE + 2  # 24
 SMOOTHED, SHORTEST = 5, 6  # frames
 SPREAD = 0.4  # the standard deviation that all columns are given, so that rare verbs weigh no more
 
@@ -51,14 +53,14 @@ class Timed:
     last: float
 
 
-def timeline(acts: Sequence[Timed], frames: int) -> Float[np.ndarray, "{frames} 22"]:
+def timeline(acts: Sequence[Timed], frames: int) -> Float[np.ndarray, "{frames} 24"]:
     """The columns of a motion whose acts are known, at 20 frames/s.
 
     Raises ValueError for a verb that there is not.
     """
     made, at = np.zeros((frames, D)), np.arange(frames) / FPS
     before = [0.0, 0.0]  # the end of the last counted act of legs and arms
-    for one in sorted(acts, key=lambda one: one.first):
+    for one in with_seats(sorted(acts, key=lambda one: one.first), frames / FPS):
         if one.verb not in VERBS:
             raise ValueError(f"no verb is called {one.verb!r}; there are {', '.join(VERBS)}")
         part = int(one.verb in ARMS)
@@ -75,7 +77,20 @@ def timeline(acts: Sequence[Timed], frames: int) -> Float[np.ndarray, "{frames} 
     return made
 
 
-def acts_of(made: Float[np.ndarray, "T 22"]) -> list[Timed]:
+def with_seats(acts: Sequence[Timed], seconds: float) -> Iterator[Timed]:
+    """The acts in their order, in which "sit" lasts until the figure gets up, or to the end.
+
+    A figure that gets up first sits from the beginning.
+    """
+    seats = [one for one in acts if one.verb in ("sit", "rise")]
+    if seats and seats[0].verb == "rise" and seats[0].first > 0:
+        yield Timed("sit", "", 1, 0.0, seats[0].first)
+    for one in acts:
+        ends = (rise.first for rise in seats if rise.verb == "rise" and rise.first > one.first)
+        yield replace(one, last=next(ends, seconds)) if one.verb == "sit" else one
+
+
+def acts_of(made: Float[np.ndarray, "T 24"]) -> list[Timed]:
     """The acts of a timeline, in the order of their beginnings; it need not be a clean one.
 
     An act lasts while its verb's column is above one half, its side stays, and the times to come do
@@ -100,7 +115,7 @@ def acts_of(made: Float[np.ndarray, "T 22"]) -> list[Timed]:
     return sorted(acts, key=lambda one: one.first)
 
 
-def tidied(made: Float[Tensor, "*B T 22"]) -> Float[Tensor, "*B T 22"]:
+def tidied(made: Float[Tensor, "*B T 24"]) -> Float[Tensor, "*B T 24"]:
     """Timelines as they would be written for their acts: whole numbers, sharp edges."""
     rows = made.double().cpu().numpy().reshape(-1, *made.shape[-2:])
     clean = np.stack([timeline(acts_of(row), len(row)) for row in rows])
@@ -114,7 +129,7 @@ def mirrored(columns: Float[Tensor, "*B T F"]) -> Float[Tensor, "*B T F"]:
     return columns * sign[: columns.shape[-1]]
 
 
-def of_the_legs() -> Bool[Tensor, "22"]:
+def of_the_legs() -> Bool[Tensor, "24"]:
     """True for the columns of the legs; the others are those of the arms."""
     legs = torch.zeros(D, dtype=torch.bool)
     legs[: len(LEGS)] = True

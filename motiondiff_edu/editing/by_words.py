@@ -95,7 +95,7 @@ def _plan(
     texts: Texts,
     generator: Generators,
     watch: Watch = iter,
-) -> Float[Tensor, "samples T 22"]:
+) -> Float[Tensor, "samples T 24"]:
     """Timelines for the texts that go with what is known of the motion."""
     seen, held = torch.from_numpy(recognised_timeline(positions)).float(), kept_columns(known)
     given = mover.plan_scaler.transform(seen.to(mover.device)).expand(len(texts), -1, -1)
@@ -107,14 +107,14 @@ def _plan(
     return timeline.tidied(mover.plan_scaler.inverse(final(watch(loop)).x_s))
 
 
-def recognised_timeline(positions: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 22"]:
+def recognised_timeline(positions: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 24"]:
     """The timeline of the actions that are recognised in a motion."""
     found = actions(positions)
     acts = [timeline.Timed(one.verb, one.side, one.count, one.first, one.last) for one in found]
     return timeline.timeline(acts, len(positions))
 
 
-def kept_columns(known: Bool[np.ndarray, "T 21"]) -> Bool[Tensor, "T 22"]:
+def kept_columns(known: Bool[np.ndarray, "T 21"]) -> Bool[Tensor, "T 24"]:
     """The columns of a timeline to keep: of the legs, or of the arms, where they are known."""
     legs, arms = (torch.from_numpy(known[:, list(part)].all(1)) for part in (FEET, HANDS))
     return torch.where(timeline.of_the_legs(), legs[:, None], arms[:, None])

@@ -141,24 +141,25 @@ LONGEST = {  # seconds from one time of a counted act to the next, at most
     "squat": 2.4,
     "jump": 1.5,
     "kick": 2.4,
-    "sit": 1.0,
     "bow": 3.0,
     "raise": 2.8,
     "punch": 1.6,
     "clap": 1.3,
 }
 SITS = 0.27  # m: behind its feet, a low pelvis sits; otherwise the figure squats
+UPRIGHT = 0.86  # m: as high as this, a pelvis is that of somebody who stands
+BESIDE_A_SEAT = 0.5  # seconds before it sits down, and after it gets up
+HELD = 1.15  # seconds: for as long an arm is up that is held, and not only raised
 UNEVEN = 1.5  # times as long as the shortest, a gap between two times ends a run of them
 
 
 def on_the_spot(s: Signals) -> list[Recognised]:
-    """Squats, jumps, kicks, sitting down, and bows."""
+    """Squats, jumps, kicks, sitting down, getting up, and bows."""
     slow = scipy.ndimage.maximum_filter1d(np.hypot(s.ahead, s.left), round(s.fps)) < 1.5  # m/s
     found = []
+    found += on_a_seat(s)
     low = peaks(-s.pelvis, -0.74, 0.12, s.fps, half=2.6)
     found += repeated_acts("squat", "", {t: x for t, x in low.items() if s.back[t] <= SITS}, s.fps)
-    sits = repeated_acts("sit", "", {t: x for t, x in low.items() if s.back[t] > SITS}, s.fps)
-    found += [replace(one, count=1) for one in sits]
     off = peaks(np.minimum(s.toes.min(1), s.pelvis - 0.98), 0.05, 0.04, s.fps)
     for jumps in repeated_acts("jump", "", {t: x for t, x in off.items() if slow[t]}, s.fps):
         first, last = (round(x * s.fps) for x in (jumps.first, jumps.last))
@@ -171,6 +172,23 @@ def on_the_spot(s: Signals) -> list[Recognised]:
         found += repeated_acts("kick", side, ahead, s.fps)
     bent = peaks(s.lean, np.radians(31.0), np.radians(14.0), s.fps)
     found += repeated_acts("bow", "", {t: x for t, x in bent.items() if s.pelvis[t] > 0.85}, s.fps)
+    return found
+
+
+def on_a_seat(s: Signals) -> list[Recognised]:
+    """Sitting down and getting up: who is low behind the feet for a while sits.
+
+    A figure that sits at first does not sit down, and one that sits at last does not get up.
+    """
+    found = []
+    for first, last in runs_over_gaps((s.pelvis < 0.74) & (s.back > SITS), 0.3 * s.fps):
+        if last - first < 0.3 * s.fps:
+            continue
+        above = np.flatnonzero(s.pelvis > UPRIGHT)
+        for verb, beside in (("sit", above[above < first][-1:]), ("rise", above[above >= last])):
+            if len(beside):
+                ends = sorted((int(beside[0]), first if verb == "sit" else last))
+                found.append(Recognised(verb, "", 1, "", ends[0] / s.fps, ends[1] / s.fps))
     return found
 
 
@@ -222,6 +240,10 @@ def on_the_way(s: Signals, spot: list[Recognised]) -> list[Recognised]:
     state[turns & (s.turning > 0)] = "turn left"
     state[turns & (s.turning < 0)] = "turn right"
     state[frames_with(spot, s)] = ""
+    for one in spot:
+        if one.verb in ("sit", "rise"):  # which move the pelvis to and fro
+            around = (one.first - BESIDE_A_SEAT) * s.fps, (one.last + BESIDE_A_SEAT) * s.fps
+            state[max(0, round(around[0])) : round(around[1])] = ""
     found = []
     for word in ("walk", "run", "back", "aside left", "aside right", "turn left", "turn right"):
         verb, _, side = word.partition(" ")
@@ -272,15 +294,16 @@ def without_passages(found: list[Recognised]) -> list[Recognised]:
 
 # ---- acts of the arms ----------------------------------------------------------------------------
 def of_the_arms(s: Signals, spot: list[Recognised]) -> list[Recognised]:
-    """Waving, raising, punching, clapping and pointing.
+    """Waving, raising, holding up, punching, clapping and pointing.
 
-    Jumps, kicks and bows have movements of the arms of their own; nothing is looked for there.
+    Jumps, kicks and bows have movements of the arms of their own; nothing but an arm that is held
+    up is looked for there.
     """
     free = np.ones(len(s.ahead), bool)
     for one in spot:
         if one.verb in ("jump", "kick", "bow"):
             free[max(0, round((one.first - 0.2) * s.fps)) : round((one.last + 0.4) * s.fps)] = False
-    busy = frames_with([one for one in spot if one.verb in ("squat", "sit")], s)
+    busy = frames_with([one for one in spot if one.verb in ("squat", "sit", "rise")], s)
     out, up, front = np.moveaxis(s.hands, -1, 0)
     found = []
     rising = np.gradient(up, 1 / s.fps, axis=0)
@@ -291,7 +314,14 @@ def of_the_arms(s: Signals, spot: list[Recognised]) -> list[Recognised]:
     found += repeated_acts("clap", "", near, s.fps)
     claps = frames_with(found, s)
     level = (s.reach > 0.44) & (np.abs(up) < 0.34)
-    high = [{t: x for t, x in peaks(up[:, k], 0.38, 0.2, s.fps).items() if free[t]} for k in (0, 1)]
+    raised = held_up(up > 0.38, s.fps)
+    found += raised
+    held_by = [frames_with([one for one in raised if one.side in (side, "both")], s)
+               for side in SIDES]  # fmt: skip
+    high = [
+        {t: x for t, x in peaks(up[:, k], 0.38, 0.2, s.fps).items() if free[t] and not own[t]}
+        for k, own in enumerate(held_by)
+    ]
     both = {t: x for t, x in high[0].items() if any(abs(t - u) < 0.3 * s.fps for u in high[1])}
     paired = [u for u in high[1] if any(abs(t - u) < 0.3 * s.fps for t in both)]
     found += repeated_acts("raise", "both", both, s.fps)
@@ -323,8 +353,35 @@ def of_the_arms(s: Signals, spot: list[Recognised]) -> list[Recognised]:
             and not any(one.first - 0.2 < t / s.fps < one.last + 0.2 for one in held)
         }
         found += repeated_acts("punch", side, hits, s.fps)
-        found += waves(s, k, free)
-    return found
+    return [*found, *of_both_sides(waves(s, 0, free), waves(s, 1, free))]
+
+
+def held_up(high: Bool[np.ndarray, "T 2"], fps: float) -> list[Recognised]:
+    """Arms that stay up."""
+    each = [
+        [
+            Recognised("hold", side, 1, "", first / fps, last / fps)
+            for first, last in runs_over_gaps(high[:, k], 0.1 * fps)
+            if last - first >= HELD * fps
+        ]
+        for k, side in enumerate(SIDES)
+    ]
+    return of_both_sides(*each)
+
+
+def of_both_sides(left: list[Recognised], right: list[Recognised]) -> list[Recognised]:
+    """The acts of two arms; two of which most is at one time are one act of both."""
+    found = []
+    for one in left:
+        for other in right:
+            first, last = max(one.first, other.first), min(one.last, other.last)
+            if last - first > 0.5 * max(one.last - one.first, other.last - other.first):
+                right = [x for x in right if x != other]
+                times = min(one.first, other.first), max(one.last, other.last)
+                one = Recognised(one.verb, "both", one.count, one.direction, *times)
+                break
+        found.append(one)
+    return [*found, *right]
 
 
 def waves(s: Signals, k: int, free: Bool[np.ndarray, "T"]) -> list[Recognised]:

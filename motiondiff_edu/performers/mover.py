@@ -94,7 +94,7 @@ class Mover(Performer):
         ids: Texts,
         frames: int,
         guidance: float = 1.0,
-        plan: Float[Tensor, "#B T 22"] | Float[np.ndarray, "#B T 22"] | None = None,
+        plan: Float[Tensor, "#B T 24"] | Float[np.ndarray, "#B T 24"] | None = None,
     ) -> Denoiser:
         """`denoise(x_s, s) -> eps_hat` of motions of `frames` frames for texts (`reader.encoded`).
 
@@ -122,7 +122,7 @@ class Mover(Performer):
             raise ValueError("this mover makes no plans")
         return self._guided(self.model.planner, ids, frames, guidance)
 
-    def _plan(self, plan: Tensor | np.ndarray, texts: int, frames: int) -> Float[Tensor, "#B T 22"]:
+    def _plan(self, plan: Tensor | np.ndarray, texts: int, frames: int) -> Float[Tensor, "#B T 24"]:
         """A plan as the network takes it.  Raises ValueError for one of another shape."""
         made = torch.as_tensor(plan, dtype=torch.float32, device=self.device)
         if made.ndim != 3 or made.shape[0] not in (1, texts) or made.shape[2] != timeline.D:
@@ -165,9 +165,9 @@ class Mover(Performer):
         steps: int | None = STEPS,
         eta: float = ETA,
         guidance: float = 1.0,
-        start: Float[Tensor, "B T 22"] | None = None,
+        start: Float[Tensor, "B T 24"] | None = None,
         watch: Watch = iter,
-    ) -> Float[Tensor, "B T 22"]:
+    ) -> Float[Tensor, "B T 24"]:
         """Timelines for texts (`beyond/timeline.py`), tidied up; for a network that plans.
 
         `start` is the noise to begin with (default: drawn).
@@ -243,7 +243,7 @@ class Mover(Performer):
         eta: float = ETA,
         guidance: float = 1.0,
         start: Float[Tensor, "B T 66"] | None = None,
-        plan: Float[Tensor, "#B T 22"] | Float[np.ndarray, "#B T 22"] | None = None,
+        plan: Float[Tensor, "#B T 24"] | Float[np.ndarray, "#B T 24"] | None = None,
     ) -> Float[Tensor, "B T 21 3"]:
         """Motions in metres for texts as the network takes them (`reader.encoded`), one each.
 

@@ -24,7 +24,6 @@ class PlannedConfig(TextMoFusionConfig):
 
     D: int = moving_frame.D + timeline.D
     plan_widths: tuple[int, ...] = (48, 48, 64)
-    plan_depth: int = 2
 
     def of_one(self) -> TextMoFusionConfig:
         """The configuration of the network for motions."""
@@ -33,7 +32,7 @@ class PlannedConfig(TextMoFusionConfig):
 
     def of_the_plan(self) -> TextMoFusionConfig:
         """The configuration of the network for timelines."""
-        return replace(self.of_one(), D=timeline.D, widths=self.plan_widths, depth=self.plan_depth)
+        return replace(self.of_one(), D=timeline.D, widths=self.plan_widths)
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +61,7 @@ class PlannedMoFusion(nn.Module):
         x_s: Float[Tensor, "B T 66"],
         s: Int[Tensor, "B"],
         contexts: Contexts,
-        plan: Float[Tensor, "B T 22"],
+        plan: Float[Tensor, "B T 24"],
     ) -> Float[Tensor, "B T 66"]:
         """x0_hat of motions that go with a plan, which has no noise."""
         return self.decode(x_s, s, self.encode(contexts, x_s.shape[1]), plan)
@@ -76,7 +75,7 @@ class PlannedMoFusion(nn.Module):
         x_s: Float[Tensor, "B T 66"],
         s: Int[Tensor, "B"],
         memory: Memory,
-        plan: Float[Tensor, "B T 22"],
+        plan: Float[Tensor, "B T 24"],
     ) -> Float[Tensor, "B T 66"]:
         both = torch.cat([x_s, plan], -1)
         return self.performer.decode(both, s, memory)[..., : moving_frame.D]
@@ -85,7 +84,7 @@ class PlannedMoFusion(nn.Module):
 class Performing(nn.Module):
     """The network for motions with its plan: it is called as any network of MoFusion is."""
 
-    def __init__(self, model: PlannedMoFusion, plan: Float[Tensor, "B T 22"]):
+    def __init__(self, model: PlannedMoFusion, plan: Float[Tensor, "B T 24"]):
         super().__init__()
         self.model, self.plan = model, plan
         self.config = model.config

@@ -1,8 +1,7 @@
 """MoFusion from text: the U-Net of the dancers, whose keys and values come from a text.
 
-Words have no times, so their keys are not rotated; a query still knows its own time. The lowest
-levels also attend to the motion itself (`beyond/self_attention.py`). The tokens are those of its
-own word encoder, or as in the paper those of CLIP.
+Words have no times, so their keys are not rotated; a query still knows its own time. The tokens are
+those of its own word encoder, or as in the paper those of CLIP.
 Source: MoFusion 3.3.
 """
 
@@ -12,12 +11,11 @@ from typing import Any, Protocol, runtime_checkable
 from jaxtyping import Float, Int
 from torch import Tensor, nn
 
-from ..beyond.self_attention import DEPTH, SelfAttendingMoFusion
 from ..conditions import clip as clips
 from ..conditions.clip import ClipEncoder, ClipTokens
 from ..conditions.text import MOST_WORDS
 from ..conditions.word_encoder import WordEncoder
-from ..mofusion import Memory, MoFusionConfig, Music
+from ..mofusion import Memory, MoFusion, MoFusionConfig, Music
 from ..motion import moving_frame
 from .networks import register
 
@@ -37,7 +35,6 @@ class TextMoFusionConfig(MoFusionConfig):
     music_layers: int = 0
     words: tuple[str, ...] = ()
     word_layers: int = 2
-    depth: int = DEPTH  # layers in the middle (`beyond.self_attention`)
     longest: int = MOST_WORDS
     clip: str = ""
     clip_width: int = clips.WIDTH  # of a token of that CLIP
@@ -70,7 +67,7 @@ class TextMoFusion(nn.Module):
         super().__init__()
         self.config = config
         self.words: TextEncoder = words or encoder_of(config)
-        self.unet = SelfAttendingMoFusion(config, depth=config.depth)
+        self.unet = MoFusion(config)
 
     def listen(self, texts: Texts) -> Music:
         """The context of texts."""

@@ -136,7 +136,7 @@ def training_texts(clips: int, seed: int) -> DescribedWindows:
     )
 
 
-def timeline_of(spans: Sequence, frames: int) -> Float[np.ndarray, "{frames} 22"]:
+def timeline_of(spans: Sequence, frames: int) -> Float[np.ndarray, "{frames} 24"]:
     """The timeline of a clip of `data_synth.actions`, from its spans."""
     acts = [Timed(one.act.verb, one.act.side, one.act.count, one.first, one.last) for one in spans]
     return timeline(acts, frames)

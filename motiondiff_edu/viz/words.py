@@ -61,7 +61,7 @@ def asked_and_shown(
     return fig
 
 
-def timelines(plans: Mapping[str, Float[np.ndarray, "T 22"]], words: str) -> Figure:
+def timelines(plans: Mapping[str, Float[np.ndarray, "T 24"]], words: str) -> Figure:
     """Timelines (`beyond/timeline.py`, 20 frames/s), one below another.
 
     The lines are how many times are still to come; a hill is each time, with its verb below it.

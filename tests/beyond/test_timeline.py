@@ -31,7 +31,8 @@ from motiondiff_edu.recipes.mover import timeline_of
 def test_its_verbs_are_those_of_the_sentences():
     assert set(VERBS) == set(ACTS) and len(VERBS) == len(set(VERBS))
     assert {verb for verb in ACTS if ACTS[verb].kind == "arms"} == set(ARMS)
-    assert {verb for verb in ACTS if ACTS[verb].kind == "way"} == set(LEGS) - set(WITH_TIMES)
+    last_on = {verb for verb in ACTS if ACTS[verb].kind == "way"} | {"sit"}
+    assert last_on == set(LEGS) - set(WITH_TIMES)
     assert texts.COUNTED <= set(WITH_TIMES)
 
 
@@ -61,6 +62,17 @@ def test_two_acts_of_the_legs_and_one_of_the_arms_by_hand():
 def test_a_walk_is_not_counted():
     made = timeline([Timed("walk", "", 1, 0.0, 1.0)], 20)
     assert (made[:, VERBS.index("walk")] == 1).all() and made.sum() == 20
+
+
+def test_who_sits_down_sits_until_he_gets_up():
+    sit = VERBS.index("sit")
+    sits, rises = Timed("sit", "", 1, 0.5, 1.5), Timed("rise", "", 1, 3.0, 4.0)
+    made = timeline([sits, rises], 120)
+    assert np.flatnonzero(made[:, sit]).tolist() == list(range(10, 60))
+    assert np.flatnonzero(timeline([sits], 120)[:, sit]).tolist() == list(range(10, 120))
+    assert np.flatnonzero(timeline([rises], 120)[:, sit]).tolist() == list(range(60))
+    again = timeline([rises, Timed("sit", "", 1, 4.5, 5.5)], 120)
+    assert np.flatnonzero(again[:, sit]).tolist() == [*range(60), *range(90, 120)]
 
 
 def test_a_verb_that_there_is_not_is_refused():
@@ -99,6 +111,9 @@ def test_the_acts_of_a_timeline_are_those_that_it_was_made_of(k):
     long = [s for s in one.acted.spans if s.last - s.first > SHORTEST / FPS]
     assert all(s.act.verb == "stand" for s in one.acted.spans if s not in long)
     asked = [(s.act.verb, s.act.side.replace("both", ""), s.act.count) for s in long]
+    seats = [s for s in long if s.act.verb in ("sit", "rise")]
+    if seats and seats[0].act.verb == "rise" and seats[0].first > SHORTEST / FPS:
+        asked.append(("sit", "", 1))  # from the beginning
     found = [(act.verb, act.side, act.count) for act in acts_of(made)]
     assert sorted(found) == sorted(asked)
     again = timeline(acts_of(made), len(made))

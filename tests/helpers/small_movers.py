@@ -19,7 +19,7 @@ from motiondiff_edu.performers.text_mofusion import TextMoFusionConfig
 WORDS = base_vocabulary(captions.vocabulary())
 SIZES = {"widths": (16, 24), "heads": 2, "C": 20, "S": 30, "words": WORDS, "word_layers": 1}
 SMALL = TextMoFusionConfig(**SIZES)
-PLANNED = PlannedConfig(**SIZES, depth=1, plan_widths=(8, 16), plan_depth=0)
+PLANNED = PlannedConfig(**SIZES, plan_widths=(8, 16))
 SPREAD = Scaler(torch.linspace(-1, 1, D), torch.linspace(0.5, 2, D))
 
 

@@ -133,7 +133,7 @@ def test_a_plan_of_ones_own_is_an_array_of_the_right_shape(planning):
     with pytest.raises(ValueError, match="plan: it has 40 frames, and the motion 44"):
         planning.act_ids(ids, 44, steps=2, plan=own)
     for wrong in (own[0], own[..., :5], np.repeat(own, 3, 0)):
-        with pytest.raises(ValueError, match=r"its shape must be \(1 or 2, frames, 22\)"):
+        with pytest.raises(ValueError, match=r"its shape must be \(1 or 2, frames, 24\)"):
             planning._plan(wrong, len(ids), 40)  # the tests' check of shapes comes first otherwise
 
 

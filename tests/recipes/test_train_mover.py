@@ -223,7 +223,7 @@ def test_only_a_network_that_makes_timelines_is_trained_on_them_alone(planned, t
 
 
 def tiny_plan(windows) -> PlannedConfig:
-    return PlannedConfig(**SIZES, words=windows.words, plan_widths=(8, 16), plan_depth=0)
+    return PlannedConfig(**SIZES, words=windows.words, plan_widths=(8, 16))
 
 
 def same(a: torch.nn.Module, b: torch.nn.Module) -> bool:

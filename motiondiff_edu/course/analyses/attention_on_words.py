@@ -47,7 +47,7 @@ def attention_on_words(
     positions: Float[np.ndarray, "T 21 3"],
     s: int,
     *,
-    plan: Float[Tensor, "1 T 22"] | None = None,
+    plan: Float[Tensor, "1 T 24"] | None = None,
     generator: torch.Generator | None = None,
 ) -> WordMaps:
     """Where each layer reads in the text while this motion, noised to step s, is denoised.
@@ -65,7 +65,7 @@ def attention_on_words(
 def attention_of_the_plan(
     mover: Mover,
     text: str,
-    plan: Float[Tensor, "1 T 22"],
+    plan: Float[Tensor, "1 T 24"],
     s: int,
     *,
     generator: torch.Generator | None = None,
