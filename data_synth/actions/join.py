@@ -21,20 +21,21 @@ def crossfade(
     a: Float[np.ndarray, "T 21 3"],
     b: Float[np.ndarray, "T 21 3"],
     share: Float[np.ndarray, "T"],
-    feet: Float[np.ndarray, "T 21 3"],
 ) -> Float[np.ndarray, "T 21 3"]:
-    """The mix of two motions, `share` of b; toes are those of `feet`, a or b.
+    """The mix of two motions, `share` of b, with the toes of b.
 
-    Toes that are planted in both motions must be in one place.
+    Where the mix begins, the toes of both must be in one place. Hips too far from a foot come down.
+    Raises ValueError where that is not enough.
     """
     w = share[:, None]
     out = np.empty_like(a)
     out[:, 0] = a[:, 0] + w * (b[:, 0] - a[:, 0])
+    out[:, 0, 1] -= _drop(a, b, out[:, 0], w)
     for joint in UPPER:
         out[:, joint] = out[:, PARENTS[joint]] + _bone(a, b, w, joint)
     for socket, knee, ankle, toe in LEGS:
         out[:, socket] = out[:, 0] + _bone(a, b, w, socket)
-        out[:, toe] = feet[:, toe]
+        out[:, toe] = b[:, toe]
         out[:, ankle] = out[:, toe] - _bone(a, b, w, toe)
         _check_reach(out[:, socket], out[:, ankle])
         toward = [unit(p[:, knee] - (p[:, socket] + p[:, ankle]) / 2) for p in (a, b)]
@@ -58,6 +59,16 @@ def mixed_bone(
 ) -> Float[np.ndarray, "T 3"]:
     """A bone of this length in the mixed direction of two, `share` of the second."""
     return length * unit(first + share * (second - first))
+
+
+def _drop(a, b, hips: Float[np.ndarray, "T 3"], w) -> Float[np.ndarray, "T"]:
+    """How far the hips must come down, so that both legs reach their feet."""
+    drop = np.zeros(len(hips))
+    for socket, _, _, toe in LEGS:
+        apart = hips + _bone(a, b, w, socket) - (b[:, toe] - _bone(a, b, w, toe))
+        most = np.sqrt(np.maximum(REACH**2 - (apart[:, [0, 2]] ** 2).sum(-1), 0.0))
+        drop = np.maximum(drop, apart[:, 1] - most)
+    return drop
 
 
 def _check_reach(socket: Float[np.ndarray, "T 3"], ankle: Float[np.ndarray, "T 3"]) -> None:

@@ -114,13 +114,13 @@ def _performed(sentence: Sentence, seconds: float, late: float, seed: int) -> tu
         else:
             standing = state if isinstance(state, Standing) else _first_stand(style, rng)
             carried = CARRIED.get(blocks[k - 1][-1].legs.verb, 0.0) if k else 0.0
-            # in a join the feet are those of the piece before: none may leave the floor in it
+            # none of the feet leaves the floor in a join
             rest = JOIN - spot.on_the_floor(block[0].legs, block[0].legs_period) if k else 0.0
             begins = max(0.05, rest), carried
             piece, cut, inner, state = _on_the_spot(block, standing, room, seed, begins, sits)
         sits = False
         spans += [Span(at / FPS + first, at / FPS + end, act) for first, end, act in inner]
-        made = piece if made is None else _joined(made, piece, at, block[0].kind == "way")
+        made = piece if made is None else _joined(made, piece, at)
         at += cut
     assert made is not None  # a sentence has a block
     timed = _arms(slots, spans, rng)
@@ -286,16 +286,18 @@ def _on_the_spot(
     return piece, int(np.ceil(at * FPS)), inner, after
 
 
-def _joined(made: Piece, piece: Piece, at: int, on_the_way: bool) -> Piece:
-    """The motion so far until `at`, faded into the next piece, whose frame 0 is frame `at`."""
+def _joined(made: Piece, piece: Piece, at: int) -> Piece:
+    """The motion so far until `at`, faded into the next piece, whose frame 0 is frame `at`.
+
+    Both feet stand in frame `at`, and are then those of the next piece.
+    """
     n = min(round(JOIN * FPS) + 1, len(made) - at, len(piece))
     share = least_jerk(np.arange(n) / max(n - 1, 1))
     before, after = made.positions[at : at + n], piece.positions[:n]
-    mixed = crossfade(before, after, share, after if on_the_way else before)
-    contacts = piece.contacts[:n] if on_the_way else made.contacts[at : at + n]
+    mixed = crossfade(before, after, share)
     return Piece(
         np.concatenate([made.positions[:at], mixed, piece.positions[n:]]),
-        np.concatenate([made.contacts[:at], contacts, piece.contacts[n:]]),
+        np.concatenate([made.contacts[:at], piece.contacts]),
     )
 
 

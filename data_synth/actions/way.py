@@ -31,7 +31,7 @@ TURNS = {"": 90.0, "around": 180.0}  # degrees
 TURNING, SLOWEST_TURN = 1.75, 0.8  # rad/s
 RISE = (2.6, 1.6, 6.0)  # m/s^2 ahead and aside, rad/s^2
 SMOOTH = 0.12  # seconds
-SLOW, APART = 0.45, 0.42  # m/s and metres between the toes, where a walk has come to rest
+SLOW, APART = 0.4, 0.4  # m/s and metres between the toes, where a walk has come to rest
 TAIL = 4.5  # seconds without control, within which a walk comes to rest
 
 
@@ -147,12 +147,15 @@ def settled(piece: Piece, least: int) -> int:
     Whoever walks on would now close the feet, for a second and more; who acts on the spot need not.
     Raises ValueError when there is none.
     """
-    both = np.asarray(piece.contacts.all(1))
+    both = np.asarray(piece.contacts.all(1))[:-1]
     speed = np.linalg.norm(np.diff(piece.positions[:, 0][:, [0, 2]], axis=0), axis=-1) * FPS
-    for t in range(least, len(piece) - 1):
-        toes = piece.positions[t, list(TOES)]
-        if both[t] and speed[t] < SLOW and np.linalg.norm(toes[0] - toes[1]) < APART:
-            return t
+    toes = piece.positions[:-1, list(TOES)]
+    near = np.linalg.norm(toes[:, 0] - toes[:, 1], axis=-1) < APART
+    rests = both & (speed < SLOW)
+    for fit in (rests & near, rests):
+        found = np.flatnonzero(fit[least:])
+        if len(found):
+            return least + int(found[0])
     raise ValueError(f"the walk does not come to rest within {len(piece) / FPS:.1f} s")
 
 
