@@ -256,7 +256,9 @@ def _sheet(script: Script, last: float, rest: dict[str, float], rng: np.random.G
 
 def _arms(pose: tuple[float, ...]) -> dict[str, float]:
     """The channels of both arms in a pose."""
-    return {f"{side}_{name}": value for side in "lr" for name, value in zip(ARM, pose, strict=False)}
+    return {
+        f"{side}_{name}": value for side in "lr" for name, value in zip(ARM, pose, strict=False)
+    }
 
 
 def hands_of(rng: np.random.Generator) -> dict[str, float]:

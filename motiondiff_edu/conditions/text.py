@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 MOST_WORDS = 64  # words of a text
 MOST_PHRASES = 3  # joined by "then", in the texts of the training
@@ -84,12 +85,14 @@ class TextError(ValueError):
 class Read:
     """A text as a network gets it: its words, all known, and notes on how others were read.
 
-    `text` is what was read, for the source of a motion.
+    `text` is what was read, for the source of a motion. `asked` are the acts that it asks for
+    (`sentences.understand`), if they are known.
     """
 
     text: str
     words: tuple[str, ...]
     notes: tuple[str, ...] = ()
+    asked: tuple[tuple[Any, ...], ...] = ()
 
 
 @cache

@@ -14,7 +14,9 @@ import torch
 from jaxtyping import Bool, Float, Int
 from torch import Tensor, nn
 
-from .text import Read, read_words
+from .acts import in_words
+from .sentences import Understood, understand
+from .text import Read, TextError, read_words
 
 # ids
 PADDING = 0  # of no word
@@ -71,8 +73,19 @@ class WordReader:
     words: tuple[str, ...]
 
     def read(self, text: str) -> Read:
-        """The words of a text.  Raises TextError as `text.read_words`."""
-        return read_words(text, self.words)
+        """The words of a text.
+
+        A sentence that the grammar understands is said in the plain words of the training.
+        Raises TextError as `text.read_words`.
+        """
+        found = understand(text) if isinstance(text, str) else Understood(())
+        if not found.parts:
+            return read_words(text, self.words)
+        try:
+            plain = read_words(in_words(found.parts), self.words, {})
+        except TextError:  # a network with other words
+            return read_words(text, self.words)
+        return Read(text.strip(), plain.words, (*found.notes, *plain.notes), found.parts)
 
     def encoded(self, texts: Sequence[tuple[str, ...]]) -> Int[Tensor, "B M"]:
         """What the network takes of texts that were read; () is the empty text."""

@@ -452,6 +452,50 @@ def agreement(phrases: Phrases, found: Sequence[Recognised]) -> Agreement:
     return Agreement(*shares, float(all(share == 1 or np.isnan(share) for share in shares)))
 
 
+def shortfalls(phrases: Phrases, found: Sequence[Recognised]) -> list[str]:
+    """What is asked for and not to be seen, in words; nothing where all is.
+
+    Acts, their sides and counts, their directions, and the order of the phrases. Standing is no
+    action. A jump without a direction may go anywhere, and an arm that is raised once may stay up.
+    """
+    asked = [[act for act in phrase if act.verb != "stand"] for phrase in phrases]
+    matched, more = _matched(asked, found)
+    shown = [act for _, act, _ in matched]
+    words = []
+    for phrase in asked:
+        for act in phrase:
+            if act in shown:
+                shown.remove(act)
+                continue
+            held = [one for one in more if one.verb == "hold" and one.side == act.side]
+            if act.verb == "raise" and act.count == 1 and held:
+                more = [one for one in more if one is not held[0]]
+                continue
+            words.append(f"{told(act)} is not to be seen")
+    for _, act, one in matched:
+        if act.side and one.side != act.side:
+            words.append(f"{told(act)} is to be seen on the {one.side} side")
+        elif act.verb in COUNTED and one.count != act.count:
+            words.append(f"{told(act)} is to be seen {one.count} times, and not {act.count}")
+        elif act.verb in DIRECTED and one.direction != act.direction != "":
+            words.append(f"{told(act)} is to be seen in another direction")
+    middles = [(k, act, (one.first + one.last) / 2) for k, act, one in matched]
+    words += [
+        f"{told(late)} comes before {told(early)}"
+        for i, early, a in middles
+        for j, late, b in middles
+        if i < j and a > b
+    ]
+    return words
+
+
+def told(act: Asked) -> str:
+    """An act in a message: its verb, and its side."""
+    names = {"back": "walk backwards", "aside": "step aside", "hold": "arm up", "rise": "get up"}
+    name = names.get(act.verb, act.verb)
+    return f"{name!r} ({act.side})" if act.side else f"{name!r}"
+
+
 def _matched(
     phrases: Phrases, found: Sequence[Recognised]
 ) -> tuple[list[tuple[int, Asked, Recognised]], list[Recognised]]:

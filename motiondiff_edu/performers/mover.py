@@ -14,11 +14,14 @@ from torch import Tensor
 
 from ..beyond import timeline
 from ..beyond.classifier_free import guided_by_condition
+from ..conditions.acts import seconds_of
 from ..conditions.clip import ClipModel, check
 from ..conditions.text import Read
 from ..conditions.word_encoder import WordReader
 from ..ddpm import Denoiser, Generators, draw
+from ..metrics import texts
 from ..motion.arguments import (
+    checked_count,
     checked_guidance,
     checked_samples,
     checked_seconds,
@@ -40,6 +43,7 @@ from .text_mofusion import TextMoFusionConfig, Texts
 ETA = 0.5  # default of DDIM
 SECONDS = 6.0
 SHORTEST, LONGEST = 2.0, 10.0  # seconds, as in training
+TRIES = 4  # draws of a motion that does not show what was asked for
 
 
 def checked_length(seconds: float) -> float:
@@ -49,6 +53,11 @@ def checked_length(seconds: float) -> float:
             f"seconds must be from {SHORTEST:g} to {LONGEST:g}, as in training, not {seconds:g}"
         )
     return float(seconds)
+
+
+def lacking(asked: tuple, positions: Float[np.ndarray, "T 21 3"]) -> list[str]:
+    """What a motion does not show of the acts that were asked for, in words."""
+    return texts.shortfalls(asked, texts.actions(positions)) if asked else []
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -181,11 +190,12 @@ class Mover(Performer):
         self,
         text: str | Read,
         *,
-        seconds: float = SECONDS,
+        seconds: float | None = None,
         samples: int = 1,
         seed: int = 0,
         steps: int | None = STEPS,
         guidance: float = 1.0,
+        tries: int = TRIES,
         progress: bool = True,
     ) -> Motion | list[Motion]:
         """Do what a sentence says, such as "walks forward, then waves with the left hand".
@@ -195,42 +205,76 @@ class Mover(Performer):
         says which words were read as others; there is none for a text that `reader.read` has read
         already (its `notes` say the same).
 
-        seconds   of the motion, from 2 to 10; a long sentence needs the time that it takes
+        seconds   of the motion, from 2 to 10 (default: what the acts of the sentence take)
         samples   above 1: a list with this many motions; the first is that of samples=1
         steps     of DDIM, or None for DDPM with all steps, and noise of the posterior's variance
         guidance  above 1 it follows the text more closely, at twice the cost
                   (`beyond.classifier_free`)
+        tries     a motion that does not show what was asked for (`metrics.texts.shortfalls`) is
+                  drawn again, so often in all; the one that shows most is taken, and a warning says
+                  what is not to be seen. `notes` keep it
         Raises TextError for a text that cannot be read, ValueError for numbers out of range.
         Source: MoFusion 3.
         """
         count, steps = checked_samples(samples), checked_steps(steps, self.schedule.S)
-        guidance, seconds = checked_guidance(guidance), checked_length(seconds)
+        guidance, tries = checked_guidance(guidance), checked_count(tries, "tries")
         checked_seed(seed)
+        if seconds is not None:
+            checked_length(seconds)
         if isinstance(text, Read):
             found = text
         else:
             found = self.reader.read(text)
             for note in found.notes:
                 warnings.warn(note, MotionWarning, stacklevel=2)
-        ids = self.reader.encoded([found.words] * count)
-        draws, frames = generators(seed, count), round(seconds * FPS)
+        lasts = seconds or seconds_of(found.asked) or SECONDS
+        frames = round(lasts * FPS)
+        bars = bar("moving", (steps or self.schedule.S) + 1, progress)
+
+        def draw(which: list[int], again: int) -> list[Float[np.ndarray, "T 21 3"]]:
+            draws = generators(seed, count, *([again] if again else []))
+            return self._acts(found, frames, [draws[k] for k in which], steps, guidance, bars)
+
+        acts = draw(list(range(count)), 0)
+        wrong = [lacking(found.asked, act) for act in acts]
+        for again in range(1, tries):
+            which = [k for k in range(count) if wrong[k]]
+            for k, act in zip(which, draw(which, again) if which else [], strict=True):
+                others = lacking(found.asked, act)
+                if len(others) < len(wrong[k]):
+                    acts[k], wrong[k] = act, others
+        made = []
+        for act, words in zip(acts, wrong, strict=True):
+            notes = (f"asked: {found.text:.80}; but {'; '.join(words)}",) if words else ()
+            for note in notes:
+                warnings.warn(note, MotionWarning, stacklevel=2)
+            made.append(Motion(act, FPS, source=f"{found.text:.60}", notes=(*found.notes, *notes)))
+        return made if samples > 1 else made[0]
+
+    def _acts(
+        self,
+        found: Read,
+        frames: int,
+        draws: list[torch.Generator],
+        steps: int | None,
+        guidance: float,
+        watch: Watch,
+    ) -> list[Float[np.ndarray, "{frames} 21 3"]]:
+        """Motions for a text that was read, one for each generator, with clean feet and bones."""
+        ids = self.reader.encoded([found.words] * len(draws))
         whole = -(-frames // GRID) * GRID  # as in training; what is too much is cut off
-        watch = bar("moving", (steps or self.schedule.S) + 1, progress)
         plan = None
         if self.can_plan:
             plan = self.plans(
                 ids, whole, generator=draws, steps=steps, guidance=guidance, watch=watch
             )
         denoise = self.denoiser(ids, whole, guidance, plan)
-        x_S = self._noise((count, whole, D), draws, None)
+        x_S = self._noise((len(draws), whole, D), draws, None)
         made = self.positions_of(
             sample_motion(denoise, x_S, self.schedule, steps, ETA, draws, watch)
         )
-        source = f"{found.text:.60}"
         acts = made.double().cpu().numpy()
-        clean = [clean_up(x, FPS, body=Body.of(x, bones=BONE_LENGTHS)) for x in acts]
-        made = [Motion(x[:frames], FPS, source=source) for x in clean]
-        return made if samples > 1 else made[0]
+        return [clean_up(x, FPS, body=Body.of(x, bones=BONE_LENGTHS))[:frames] for x in acts]
 
     @torch.no_grad()
     def act_ids(

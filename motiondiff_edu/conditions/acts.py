@@ -1,0 +1,140 @@
+"""Acts that a sentence can ask for: what can be said of each, its words, and how long it takes.
+
+Notebook: 16
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+Parts = tuple[tuple["Act", ...], ...]
+
+
+@dataclass(frozen=True)
+class Act:
+    """One verb, and what is said of it; an empty word says nothing.
+
+    side  "left", "right" or "both";  speed  "slowly" or "quickly"
+    direction  "forward", "aside" or "around"
+    """
+
+    verb: str
+    side: str = ""
+    count: int = 1
+    speed: str = ""
+    direction: str = ""
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What can be said of a verb: of the legs ("way", "spot") or of the arms."""
+
+    part: str
+    sides: tuple[str, ...] = ()
+    most: int = 1
+    speeds: tuple[str, ...] = ()
+    directions: tuple[str, ...] = ()
+
+
+ONE, ANY = ("left", "right"), ("left", "right", "both")
+SPEEDS = ("slowly", "quickly")
+KINDS = {
+    "walk": Kind("way", speeds=SPEEDS),
+    "run": Kind("way", speeds=("quickly",)),
+    "back": Kind("way", speeds=("slowly",)),
+    "aside": Kind("way", ONE, speeds=("slowly",)),
+    "turn": Kind("way", ONE, directions=("around",)),
+    "stand": Kind("way"),
+    "squat": Kind("spot", most=4, speeds=SPEEDS),
+    "jump": Kind("spot", most=4, directions=("forward",)),
+    "kick": Kind("spot", ONE, 4, SPEEDS),
+    "sit": Kind("spot", speeds=("slowly",)),
+    "rise": Kind("spot", speeds=("slowly",)),
+    "bow": Kind("spot", most=4, speeds=SPEEDS),
+    "wave": Kind("arms", ANY, speeds=SPEEDS),
+    "raise": Kind("arms", ANY, 4, SPEEDS),
+    "hold": Kind("arms", ANY),
+    "punch": Kind("arms", ONE, 4, SPEEDS),
+    "clap": Kind("arms", most=4, speeds=SPEEDS),
+    "point": Kind("arms", ONE, directions=("forward", "aside")),
+}
+
+
+# ---- in the plain words of the training ----------------------------------------------------------
+THIRD = {
+    ("walk", ""): ("walks forward", "walking forward"),
+    ("run", ""): ("runs forward", "running forward"),
+    ("back", ""): ("walks backwards", "walking backwards"),
+    ("aside", ""): ("steps to the {side}", "stepping to the {side}"),
+    ("turn", ""): ("turns to the {side}", "turning to the {side}"),
+    ("turn", "around"): ("turns around to the {side}", "turning around to the {side}"),
+    ("stand", ""): ("stands still", "standing still"),
+    ("squat", ""): ("squats", "squatting"),
+    ("jump", ""): ("jumps up", "jumping up"),
+    ("jump", "forward"): ("jumps forward", "jumping forward"),
+    ("kick", ""): ("kicks with the {side} foot", "kicking with the {side} foot"),
+    ("sit", ""): ("sits down", "sitting down"),
+    ("rise", ""): ("gets up", "getting up"),
+    ("bow", ""): ("bows", "bowing"),
+    ("wave", ""): ("waves with {hand}", "waving with {hand}"),
+    ("raise", ""): ("raises {limb}", "raising {limb}"),
+    ("hold", ""): ("holds {limb} up", "holding {limb} up"),
+    ("punch", ""): ("punches with the {side} hand", "punching with the {side} hand"),
+    ("clap", ""): ("claps", "clapping"),
+    ("point", "forward"): (
+        "points forward with the {side} hand",
+        "pointing forward with the {side} hand",
+    ),
+    ("point", "aside"): ("points to the {side}", "pointing to the {side}"),
+}
+TIMES = {1: "", 2: "twice", 3: "three times", 4: "four times"}
+
+
+def in_words(parts: Parts) -> str:
+    """The acts in the plain words of a training: "walks forward while clapping, then bows"."""
+    return ", then ".join(part_in_words(part) for part in parts)
+
+
+def part_in_words(part: Sequence[Act]) -> str:
+    """What happens at one time."""
+    first, *others = part
+    words = act_in_words(first, 0)
+    for act in others:
+        words += f" while {act_in_words(act, 1)}"
+    return words
+
+
+def act_in_words(act: Act, form: int) -> str:
+    """An act in the third person (form 0) or as a gerund (1)."""
+    verb = THIRD[act.verb, act.direction][form]
+    both = act.side == "both"
+    limb = "both arms" if both else f"the {act.side} arm"
+    hand = "both hands" if both else f"the {act.side} hand"
+    once = "once" if KINDS[act.verb].most > 1 else ""
+    words = (verb.format(side=act.side, limb=limb, hand=hand), TIMES[act.count] or once, act.speed)
+    return " ".join(word for word in words if word)
+
+
+# ---- time ----------------------------------------------------------------------------------------
+PERIODS = {
+    "squat": 1.35, "jump": 1.0, "kick": 1.35, "sit": 2.2, "rise": 1.6, "bow": 1.7, "wave": 2.4,
+    "raise": 1.6, "hold": 2.6, "punch": 0.8, "clap": 0.65, "point": 2.2,
+}  # fmt: skip
+ON_THE_WAY = 2.4  # seconds of walking, turning and the like
+FACTORS = {"slowly": 1.5, "quickly": 0.9}
+BESIDE = 1.4  # seconds before and after all acts
+STOPS = 0.8  # seconds from a way of walking to an act on the spot
+
+
+def seconds_of(parts: Parts) -> float:
+    """About the seconds that the acts take, from 2.5 to 10; 0 for none."""
+    if not parts:
+        return 0.0
+    total = BESIDE
+    for part in parts:
+        each = [
+            act.count * PERIODS.get(act.verb, ON_THE_WAY) * FACTORS.get(act.speed, 1.05)
+            for act in part
+        ]
+        ways = any(KINDS[act.verb].part == "way" for act in part)
+        total += max(each) + (STOPS if ways and len(parts) > 1 else 0.0)
+    return round(min(max(total, 2.5), 10.0), 1)

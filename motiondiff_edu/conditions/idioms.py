@@ -1,0 +1,147 @@
+"""How people say it: turns of phrase that are rewritten before a sentence is read, and word lists.
+
+    "gets back on their feet" -> rise      "with both arms in the air" -> & hold-s
+A new way to say something is a line here. No word was chosen by looking at sentences for judging.
+Notebook: 16
+"""
+
+import re
+
+from .text import PASSED_OVER
+
+OWN = r"(?:(?:both|the|his|her|their|your|my|its|one's|a|one|two) )*"  # before a part of the body
+# what is rewritten before anything is read; | comes between acts in a row, & between acts at once
+REWRITTEN = tuple(
+    (re.compile(pattern.replace("{own}", OWN)), other)
+    for pattern, other in (
+        (
+            r"\bfirst(ly)?\b,?|\bto (start|begin) with\b,?|\b(starts?|begins?) (off )?(by|with)\b",
+            " ",
+        ),
+        (r"\b(ends?|finish(es)?) (up )?(by|with)\b", " | "),
+        (r"\b(and|but|,)?\s*(then|next|afterwards?|later|subsequently|finally|lastly)\b,?", " | "),
+        (r"\b(and )?(after|following) (that|this|which|it)\b,?", " | "),
+        (r"\bat (the )?(very )?end\b|\bin the end\b", " | "),
+        (r"\b(which is |and is |is )?followed by\b|\bbefore\b|\buntil\b", " | "),
+        (
+            r"\bat the same time\b,?( as\b)?|\bsimultaneously\b|\ball the while\b|\bmeanwhile\b",
+            " & ",
+        ),
+        (r"\bwhile|\bwhilst\b|\bas (?=(he|she|it|they|the|a|you|i)\b)|\bduring\b", " & "),
+        (r"\b(a couple of|a pair of|couple of|double)\b", " twice "),
+        (r"\b(a few|several|some|multiple|many) times\b", " some-times "),
+        (r"\b(\d+)\s*(x|times)\b|\bx\s*(\d+)\b", r" \1\3 times "),
+        (r"\bon {own}(spot|place)\b|\bin place\b", " "),
+        (
+            r"\bhalf (a )?turn\b|\bhalf[- ]?way (a)?round\b|\b180( degrees?)?\b|\babout[- ]face\b",
+            " turn around ",
+        ),
+        (r"\bhalf round\b", " around "),
+        (
+            r"\b(stands?|standing|stood|gets?|getting|got|gat) (right |straight )?(back )?up\b",
+            " rise ",
+        ),
+        (r"\b(gets?|getting) (back )?(on|to) {own}feet\b", " rise "),
+        (r"\b(stands?|standing) (still|motionless)\b", " stand "),
+        (r"\btak(es?|ing) a seat\b|\b(is |be |gets? )?seated\b", " sit "),
+        (r"\b(hands?|arms?) (together) in a clap\b", " clap "),
+        (r"\bup in a kick\b", " "),
+        (r"\bback(s|ing|ed)? (away|up|off)\b", " walk backwards "),
+        (
+            r"\bthrow(s|ing)? {own}(arms?|hands?) (up|overhead)\b",
+            r" raise \2 ",
+        ),
+        (
+            r"\bbr(ings?|inging) {own}(hands|arms|palms)? ?(clap|together)",
+            " clap ",
+        ),
+        (r"\b(round of )?applause\b", " clap "),
+        (
+            r"\bbend(s|ing)? {own}knees\b|\bknee bends?\b|\bducks? down\b",
+            " squat ",
+        ),
+        (
+            r"\b(bend|lean|stoop)(s|ing)?( {own}body)?( over| forwards?| down)*\b",
+            " bow ",
+        ),
+        (r"\b(side ?step|side-step)(s|ping|ped)?\b|\bsteps? (to the )?sides?\b", " step sideways "),
+        (r"\bsay(s|ing)? (hello|hi|goodbye|bye)\b", " wave "),
+        (r"\bhello\b|\bhi\b|\bgoodbye\b|\bgood-bye\b|\bbye\b", " "),
+        (
+            r"\b(in(to)? the air|above {own}heads?|over {own}heads?|overhead)\b",
+            " overhead ",
+        ),
+        (
+            r"\bwith {own}(left |right )?(arm|hand)(s?) "
+            r"(?:(?:held|kept|stretched) )?(?:raised|up|overhead|high)(?: up| high| overhead)?\b",
+            lambda m: f" & hold-{(m[1] or m[3] or '').strip()} ",
+        ),
+        (
+            r"(^|[|,&]|\band\b)\s*{own}(left |right )?(arm|hand)(s?) "
+            r"(?:raised|up|overhead|high)\b",
+            lambda m: f"{m[1]} & hold-{(m[2] or m[4] or '').strip()} ",
+        ),
+        (r"\bjumping jacks?\b|\bstar jumps?\b", " jumping-jacks "),
+    )
+)
+HEADS = {
+    **dict.fromkeys("walk stroll stride amble wander go move step travel advance".split(), "walk"),
+    **dict.fromkeys("run jog race sprint dash".split(), "run"),
+    "retreat": "back",
+    "shuffle": "walk",
+    **dict.fromkeys("turn rotate pivot face".split(), "turn"),
+    **dict.fromkeys("spin twirl whirl".split(), "spin"),
+    **dict.fromkeys("stand wait stay pause stop halt freeze".split(), "stand"),
+    **dict.fromkeys("squat crouch".split(), "squat"),
+    **dict.fromkeys("jump hop leap spring bounce".split(), "jump"),
+    "kick": "kick",
+    **dict.fromkeys("sit settle".split(), "sit"),
+    "rise": "rise",
+    **dict.fromkeys("bow stoop".split(), "bow"),
+    **dict.fromkeys("wave signal greet".split(), "wave"),
+    **dict.fromkeys("raise lift reach stretch put".split(), "raise"),
+    **dict.fromkeys("hold keep have has hold- hold-s hold-left hold-right".split(), "hold"),
+    **dict.fromkeys("punch jab hit box uppercut".split(), "punch"),
+    "strike": "strike",
+    "swing": "strike",
+    **dict.fromkeys("clap applaud".split(), "clap"),
+    **dict.fromkeys("point show gesture indicate".split(), "point"),
+}
+# nouns, too: "does two jumps"; others are verbs alone
+LIGHT = frozenset(
+    "do does doing did make give take perform deliver land execute throw get try go".split()
+)
+SIDES = {"left": "left", "right": "right", "both": "both", "two-handed": "both", "either": ""}
+NUMBERS = {
+    "once": 1, "one": 1, "single": 1, "twice": 2, "two": 2, "thrice": 3, "three": 3, "four": 4,
+    "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9, "ten": 10, "dozen": 12,
+}  # fmt: skip
+PACES = {
+    **dict.fromkeys(
+        "slowly slow gently gentle leisurely calmly lazily unhurried carefully".split(), "slowly"
+    ),
+    **dict.fromkeys(
+        "quickly quick fast rapidly rapid briskly brisk hastily swiftly swift speedily".split(),
+        "quickly",
+    ),
+}
+WAYS = {
+    **dict.fromkeys("forward forwards ahead onward onwards straight front".split(), "forward"),
+    **dict.fromkeys("back backward backwards rearward rearwards reverse".split(), "back"),
+    **dict.fromkeys("sideways side aside sideward laterally sidewards".split(), "aside"),
+    **dict.fromkeys("around round".split(), "around"),
+    **dict.fromkeys("up upward upwards overhead raised high".split(), "up"),
+}
+LIMBS = {
+    **dict.fromkeys("hand hands arm arms fist fists palm palms".split(), "arm"),
+    **dict.fromkeys("leg legs foot feet knee knees".split(), "leg"),
+}
+FILLERS = PASSED_OVER | frozenset(
+    "and or with without to in out over again also along down low deep deeply place pace time times"
+    " chair stool seat air shoulder body person man woman figure people child politely hard happily"
+    " proudly casually lightly softly nicely bit motion movement spot floor ground own way himself"
+    " herself itself themselves still same then few more please let make".split()
+)
+# acts that are done to somebody, who is named after these words and need not be there
+TOWARDS = ("to", "at", "for")
+ADDRESSED = frozenset("wave bow clap point raise".split())
