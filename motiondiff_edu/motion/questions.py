@@ -130,7 +130,7 @@ def pace(points: Points, fps: float) -> str:
     """Limbs that swing as no person's do: the file is played too fast, or too slowly."""
     smooth = scipy.ndimage.gaussian_filter1d(np.nan_to_num(points), SMOOTH * fps, axis=0)
     limbs = (smooth - smooth[:, :1])[:, ENDS_OF_LIMBS]
-    if len(points) < 0.7 * fps or np.sqrt(np.mean((limbs - limbs.mean(0)) ** 2)) < LEAST:
+    if len(points) < 20 or np.sqrt(np.mean((limbs - limbs.mean(0)) ** 2)) < LEAST:
         return ""
     change, sizes = limbs, []
     for _ in range(3):
