@@ -60,7 +60,7 @@ KINDS = {
 
 
 # ---- in the plain words of the training ----------------------------------------------------------
-THIRD = {
+PLAIN = {
     ("walk", ""): ("walks forward", "walking forward"),
     ("run", ""): ("runs forward", "running forward"),
     ("back", ""): ("walks backwards", "walking backwards"),
@@ -105,7 +105,7 @@ def part_in_words(part: Sequence[Act]) -> str:
 
 def act_in_words(act: Act, form: int) -> str:
     """An act in the third person (form 0) or as a gerund (1)."""
-    verb = THIRD[act.verb, act.direction][form]
+    verb = PLAIN[act.verb, act.direction][form]
     both = act.side == "both"
     limb = "both arms" if both else f"the {act.side} arm"
     hand = "both hands" if both else f"the {act.side} hand"

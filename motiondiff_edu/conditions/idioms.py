@@ -140,8 +140,9 @@ FILLERS = PASSED_OVER | frozenset(
     "and or with without to in out over again also along down low deep deeply place pace time times"
     " chair stool seat air shoulder body person man woman figure people child politely hard happily"
     " proudly casually lightly softly nicely bit motion movement spot floor ground own way himself"
-    " herself itself themselves still same then few more please let make".split()
+    " herself itself themselves still same then few more please let make together".split()
 )
 # acts that are done to somebody, who is named after these words and need not be there
 TOWARDS = ("to", "at", "for")
+WHOSE = frozenset("a an the his her their my your its our all some".split())
 ADDRESSED = frozenset("wave bow clap point raise".split())

@@ -28,6 +28,7 @@ from .idioms import (
     SIDES,
     TOWARDS,
     WAYS,
+    WHOSE,
 )
 from .text import base_forms, synonyms
 
@@ -187,8 +188,10 @@ def addressed(tokens: Sequence[str], k: int, heads: Sequence[Head]) -> bool:
     """Whether a word says at whom somebody waves, bows, claps or points."""
     if not heads or heads[-1].verb not in ADDRESSED:
         return False
-    before = list(tokens[max(0, k - 4) : k])
-    return any(word in TOWARDS for word in before)
+    before = list(tokens[:k])
+    while before and before[-1] in WHOSE:
+        before.pop()
+    return bool(before) and before[-1] in TOWARDS
 
 
 def replace_head(head: Head, verb: str) -> Head:
@@ -235,7 +238,8 @@ def head_of(token: str, following: Sequence[str], heads: list[Head], notes: list
         if other[1:] == ["back"]:
             return "back"
     if len(token) > 3:
-        near = get_close_matches(token, spelled(), 1, 0.84)
+        swapped = [word for word in spelled() if sorted(word) == sorted(token)]
+        near = swapped or get_close_matches(token, spelled(), 1, 0.84)
         if near and near[0][0] == token[0]:
             notes.append(f"{token!r} is read as {near[0]!r}")
             return (
@@ -411,7 +415,7 @@ def allowed_side(verb: str, kind: Kind, side: str, notes: list[str]) -> str:
     if side == "both" and "both" not in kind.sides:
         notes.append(f"{verb!r} is done with one side at a time: the right one")
         return "right"
-    return side or ("both" if verb == "hold" else "right")
+    return side or "right"
 
 
 def allowed_count(verb: str, kind: Kind, count: int, notes: list[str]) -> int:

@@ -1,0 +1,132 @@
+"""The grammar of sentences: captions of the data, with verbs held out, and free ones."""
+
+import numpy as np
+import pytest
+
+from data_synth.actions.acts import VERBS, seated
+from data_synth.actions.captions import WORDINGS, caption, vocabulary, words_of
+from data_synth.actions.sentences import draw
+from motiondiff_edu.conditions.acts import KINDS, PLAIN, Act, in_words, seconds_of
+from motiondiff_edu.conditions.sentences import understand
+
+
+def acts_of(text: str) -> list[list[tuple]]:
+    """Verb, side, count, speed and direction of each act, without what says nothing."""
+    return [
+        [
+            tuple(x for x in (a.verb, a.side, a.count, a.speed, a.direction) if x not in ("", 1))
+            for a in part
+        ]
+        for part in understand(text).parts
+    ]
+
+
+def test_its_verbs_and_what_can_be_said_of_them_are_those_of_the_data():
+    assert KINDS.keys() == VERBS.keys()
+    for name, kind in KINDS.items():
+        own = VERBS[name]
+        assert (kind.part, kind.most) == (own.kind, own.most)
+        assert {*kind.sides} | {*kind.speeds} | {*kind.directions} == (
+            {*own.sides} | {*own.speeds} | {*own.directions}
+        ) - {""}
+    for (verb, direction), (third, gerund) in PLAIN.items():
+        said = [(one.third, one.gerund) for one in WORDINGS[verb, direction][:-1]]
+        assert (third.split()[0], gerund.split()[0]) in said
+        assert {
+            word for word in words_of(third) if word not in ("side", "hand", "limb")
+        } <= vocabulary()
+
+
+@pytest.mark.parametrize("held_out", [False, True])
+def test_captions_of_the_data_are_understood_as_they_were_meant(held_out):
+    rng = np.random.default_rng(3)
+    for _ in range(400):
+        sentence, _ = draw(rng)
+        text = caption(sentence, rng, held_out)
+        wanted = tuple(
+            tuple(Act(a.verb, a.side, a.count, a.speed, a.direction) for a in phrase.acts)
+            for phrase in sentence
+        )
+        found = understand(text)
+        assert found.parts == wanted, text
+        assert found.notes == (), text
+        assert understand(in_words(found.parts)).parts == wanted  # what the network is told
+
+
+@pytest.mark.parametrize(
+    "text, wanted",
+    [
+        ("squats with both arms raised", [[("squat",), ("hold", "both")]]),
+        ("She waves her left hand, and then kicks.", [[("wave", "left")], [("kick", "right")]]),
+        ("walks backwards and waves with both hands", [[("back",), ("wave", "both")]]),
+        ("sits down, then gets back on their feet", [[("sit",)], [("rise",)]]),
+        ("shuffles sideways to the left", [[("aside", "left")]]),
+        ("two right jabs followed by a left kick", [[("punch", "right", 2)], [("kick", "left")]]),
+        ("before he bows, he claps 3 times", [[("bow",)], [("clap", 3)]]),
+        ("bows after clapping twice", [[("clap", 2)], [("bow",)]]),
+        ("while walking, he applauds", [[("walk",), ("clap",)]]),
+        ("gets up from the chair and strolls along", [[("rise",)], [("walk",)]]),
+        ("HOPS ON THE SPOT 2x!", [[("jump", 2)]]),
+        ("squatting and clapping", [[("squat",)], [("clap",)]]),
+        ("squats clapping", [[("squat",), ("clap",)]]),
+        ("keeps an arm in the air while running fast", [[("run", "quickly"), ("hold", "right")]]),
+        ("spins around", [[("turn", "right", "around")]]),
+        ("points left with the right arm", [[("point", "right", "aside")]]),
+        ("kicks with the left leg, then with the right", [[("kick", "left")], [("kick", "right")]]),
+    ],
+)  # fmt: skip
+def test_what_people_write(text, wanted):
+    assert acts_of(text) == wanted
+    assert understand(text).notes == ()
+
+
+@pytest.mark.parametrize(
+    "text, named",
+    [
+        ("juggles and walks", "'juggles'"),
+        ("walks in a circle", "'circle'"),
+        ("jumps five times", "'jump' is done 4 times at most, not 5 times"),
+        ("jmups twice", "'jmups' is read as 'jumps'"),
+        ("walks to the left", "'walk' has no side: 'left' is left out"),
+        ("scratches his head, then bows", "'scratches', 'head'"),
+        ("kicks a ball", "'ball'"),
+    ],
+)
+def test_what_is_not_understood_is_named(text, named):
+    found = understand(text)
+    assert found.parts or "juggles" in text
+    assert named in " ".join(found.notes)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "   ", "hello", "do a cartwheel", "の歩く", "1234", ",,, and then"]
+)
+def test_a_sentence_without_an_act_has_none(text):
+    assert understand(text).parts == ()
+
+
+def test_no_word_of_a_sentence_is_dropped_in_silence():
+    """A strange word anywhere in a caption is named, but for who does it."""
+    rng = np.random.default_rng(4)
+    for _ in range(120):
+        text = caption(draw(rng)[0], rng).split()
+        at = int(rng.integers(1, len(text) + 1))
+        found = understand(" ".join([*text[:at], "zorbing", *text[at:]]))
+        assert "'zorbing'" in " ".join(found.notes), " ".join([*text[:at], "zorbing", *text[at:]])
+
+
+def test_the_time_grows_with_what_is_asked():
+    one, three = (seconds_of(understand(t).parts) for t in ("squats", "squats three times"))
+    assert 2.5 <= one < three <= 10 and seconds_of(()) == 0
+    long = "walks, then squats four times slowly, then bows four times slowly"
+    assert seconds_of(understand(long).parts) == 10
+
+
+def test_who_sits_and_who_stands():
+    stands = [[("walk",)], [("sit",)], [("wave", "left")], [("rise",)]]
+    assert acts_of("walks, then sits down, then waves with the left hand, then stands up") == stands
+    with pytest.raises(ValueError, match="a figure that stands cannot rise"):
+        from data_synth.actions import Act as Done
+        from data_synth.actions import Phrase
+
+        seated((Phrase(Done("walk")), Phrase(Done("rise"))))
