@@ -35,7 +35,9 @@ from .walks.scores import Measure, measure_of
 Points = Float[np.ndarray, "T 21 3"]
 Clip = tuple[Points, float]  # and frames a second
 Plant = Callable[[Points, float, int, np.random.Generator], Clip]
-SECONDS, EACH, SYNTHETIC = 4.0, 14, 200
+SECONDS = 4.0
+EACH = 14  # windows of a file
+SYNTHETIC = 200  # clips
 STRENGTHS = ("weak", "middle", "strong")
 LIMBS = [3, 7, 14, 15, 18, 19, 12]  # ankles, elbows, wrists, head
 LEAST_PATH, LEAST_HELD = 0.5, 0.15  # metres: less is no fault
