@@ -39,7 +39,7 @@ AWAY = 0.1  # metres that the body goes meanwhile
 SMOOTH = 0.015  # seconds
 FASTEST = 17.6  # rad/s: acceleration over velocity of limbs
 SLOWEST = 8.0  # rad/s: jerk over acceleration
-LEAST = 0.08  # metres: who moves less shows no pace
+LEAST = 0.06  # metres: who moves less shows no pace
 TILTED = 0.85  # of a unit vector along a body that stands
 STEADY = 0.93  # the length of the mean of such vectors over time
 UNBENT = -0.35  # cosine between trunk and legs: who never opens the hips so far does not stand
@@ -130,7 +130,8 @@ def pace(points: Points, fps: float) -> str:
     """Limbs that swing as no person's do: the file is played too fast, or too slowly."""
     smooth = scipy.ndimage.gaussian_filter1d(np.nan_to_num(points), SMOOTH * fps, axis=0)
     limbs = (smooth - smooth[:, :1])[:, ENDS_OF_LIMBS]
-    if len(points) < 20 or np.sqrt(np.mean((limbs - limbs.mean(0)) ** 2)) < LEAST:
+    whole = np.nan_to_num((points - points[:, :1])[:, ENDS_OF_LIMBS])
+    if len(points) < 20 or np.sqrt(np.mean((whole - whole.mean(0)) ** 2)) < LEAST:
         return ""
     change, sizes = limbs, []
     for _ in range(3):
