@@ -438,7 +438,13 @@ KINDS = tuple(one.name for one in fields(Agreement))
 
 
 def agreement(phrases: Phrases, found: Sequence[Recognised]) -> Agreement:
-    """Match each act of a sentence with one recognised action; the same side and count go first."""
+    """Match each act of a sentence with one recognised action; the same side and count go first.
+
+    Who sits gets up before anything else, so getting up need not be asked for. A jump without a
+    direction may go ahead.
+    """
+    if not any(act.verb == "rise" for phrase in phrases for act in phrase):
+        found = [one for one in found if one.verb != "rise"]
     matched, _ = _matched(phrases, found)
     most = max(sum(len(phrase) for phrase in phrases), len(found))
     middles = [(k, (one.first + one.last) / 2) for k, _, one in matched]
@@ -447,7 +453,13 @@ def agreement(phrases: Phrases, found: Sequence[Recognised]) -> Agreement:
         _share([one.side == act.side for _, act, one in matched if act.side]),
         _share([one.count == act.count for _, act, one in matched if act.verb in COUNTED]),
         _share([a < b for i, a in middles for j, b in middles if i < j]),
-        _share([one.direction == act.direction for _, act, one in matched if act.verb in DIRECTED]),
+        _share(
+            [
+                one.direction == act.direction
+                for _, act, one in matched
+                if act.verb in DIRECTED and (act.verb, act.direction) != ("jump", "")
+            ]
+        ),
     )
     return Agreement(*shares, float(all(share == 1 or np.isnan(share) for share in shares)))
 

@@ -48,7 +48,7 @@ class DescribedWindows:
         contacts: Sequence[Bool[np.ndarray, "_ 2"]],
         captions: Sequence[Sequence[str]],
         words: tuple[str, ...],
-        timelines: Sequence[Float[np.ndarray, "_ 22"]] | None = None,
+        timelines: Sequence[Float[np.ndarray, "_ 24"]] | None = None,
     ) -> "DescribedWindows":
         """Motions (metres, world); each has as many captions, and a timeline as long as it is.
 
@@ -63,7 +63,7 @@ class DescribedWindows:
         positions: Sequence[Float[np.ndarray, "_ 21 3"]],
         contacts: Sequence[Bool[np.ndarray, "_ 2"]],
         captions: Sequence[Sequence[str]],
-        timelines: Sequence[Float[np.ndarray, "_ 22"]] | None = None,
+        timelines: Sequence[Float[np.ndarray, "_ 24"]] | None = None,
     ) -> "DescribedWindows":
         """The same for CLIP, with captions in any words; `words` are the captions,
         and those with left and right exchanged.
@@ -83,7 +83,7 @@ class DescribedWindows:
         contacts: Sequence[Bool[np.ndarray, "_ 2"]],
         texts: Sequence[Sequence[tuple[str, ...]]],
         words: tuple[str, ...],
-        timelines: Sequence[Float[np.ndarray, "_ 22"]] | None,
+        timelines: Sequence[Float[np.ndarray, "_ 24"]] | None,
     ) -> "DescribedWindows":
         every = ids_of([text for each in texts for text in each], words)
         of_each = every.split([len(each) for each in texts])

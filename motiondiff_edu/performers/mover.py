@@ -57,7 +57,10 @@ def checked_length(seconds: float) -> float:
 
 def lacking(asked: tuple, positions: Float[np.ndarray, "T 21 3"]) -> list[str]:
     """What a motion does not show of the acts that were asked for, in words."""
-    return texts.shortfalls(asked, texts.actions(positions)) if asked else []
+    if not asked:
+        return []
+    phrases = [[texts.Asked(a.verb, a.side, a.count, a.direction) for a in part] for part in asked]
+    return texts.shortfalls(phrases, texts.actions(positions))
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -72,8 +72,9 @@ def peaks(curve: np.ndarray, least: float) -> int:
 
 def test_every_ordered_pair_of_leg_acts_joins():
     pairs_made = joins(seed=1)
-    legs = [name for name, verb in VERBS.items() if verb.kind != "arms"]
-    assert len(pairs_made) == len(legs) ** 2
+    legs = {name for name, verb in VERBS.items() if verb.kind != "arms"}
+    cannot = {(name, "rise") for name in legs - {"sit"}} | {("sit", "sit")}
+    assert pairs_made.keys() == set(product(legs, legs)) - cannot
     found = worst([measures(one) for one in pairs_made.values()])
     assert found["slip_mm"] < 1.0 and found["lowest_mm"] > -5.0 and found["bone_m"] < 1e-9
     assert 10 < found["knee_smallest"] and found["knee_largest"] < 140
@@ -145,8 +146,11 @@ def test_sides_and_directions():
         assert least < (moved[-1] - moved[0]) / 8.0 < most
     forward = alone("jump", direction="forward", count=3).positions[:, HIPS, 2]
     assert forward[-1] - forward[0] > 0.6
-    seat = alone("sit").positions[:, HIPS, 1]
-    assert 0.4 < seat.min() < 0.6 and seat[-1] > 0.9 and (seat < 0.65).mean() * 8.0 > 0.8
+    sits, rises = (alone(verb).positions[:, HIPS, 1] for verb in ("sit", "rise"))
+    assert sits[0] > 0.9 and 0.5 < sits[-1] < 0.68 and (sits < 0.7).mean() * 8.0 > 0.8
+    assert 0.5 < rises[0] < 0.68 and rises[-1] > 0.9
+    held = within(alone("hold", side="both"), "hold")[20:-20, [LEFT_HAND, RIGHT_HAND], 1]
+    assert held.min() > 1.6
 
 
 def test_speeds_are_in_their_order():
@@ -187,7 +191,7 @@ def test_the_count_cannot_be_read_from_the_length(drawn):
     near = np.digitize(lengths, np.arange(2.5, 10, 0.5))
     best = sum(Counter(counts[near == k]).most_common(1)[0][1] for k in set(near)) / len(counts)
     assert constant < 0.46 and best < constant + 0.01
-    assert abs(np.corrcoef(counts, lengths)[0, 1]) < 0.04
+    assert abs(np.corrcoef(counts, lengths)[0, 1]) < 0.07
     means = [lengths[counts == count].mean() for count in (1, 2, 3, 4)]
     assert max(means) - min(means) < 0.5
 
@@ -337,13 +341,15 @@ def test_a_crossfade_begins_and_ends_as_its_motions_do_and_keeps_bones():
     b[:, 9:] = alone("stand", seed=8).positions[20:29, 9:]
     b[:, 9:] += b[:, :1] - alone("stand", seed=8).positions[20:29, :1]
     share = np.linspace(0, 1, 9)
-    mixed = crossfade(a, b, share, a)
+    mixed = crossfade(a, b, share)
     np.testing.assert_allclose(mixed[0], a[0], atol=1e-9)
     np.testing.assert_allclose(mixed[-1], b[-1], atol=1e-9)
     bones = mixed[:, [c for _, c in BONES]] - mixed[:, [p for p, _ in BONES]]
     assert np.abs(np.linalg.norm(bones, axis=-1) - BONE_LENGTHS).max() < 1e-9
     with pytest.raises(ValueError, match="does not reach its foot"):
-        crossfade(a + [0, 0.2, 0], a + [0, 0.2, 0], share, a)
+        crossfade(a + [2.0, 0, 0], a, share)
+    high = crossfade(a + [0, 0.2, 0], a, share)  # hips too far from the feet come down
+    assert high[0, 0, 1] < a[0, 0, 1] + 0.1
     assert JOIN * 20 == 8
 
 

@@ -1,13 +1,10 @@
 """The value of each choice of a mover, and two baselines, by trainings of equal length.
 
 Each row differs from the recipe of the mover in one choice, and is trained with three seeds. The
-bag of words and the regression have no timeline either: compare them with that row; and the row
-without self-attention has no further layers: compare it with `shallow`. Without a timeline the
-network is a fifth smaller, without self-attention a quarter; a step is then faster. Steps, sampler
-and captions are equal. Since the other rows the clips have changed a little (an arm that waves, the
-depth of squats): only `shallow` and `no-self-attention` have today's. The networks are half as wide
-as the shipped mover's and see a twelfth of the frames that it saw; so the numbers say what a choice
-is worth, and not how good a mover can be.
+bag of words and the regression have no timeline either: compare them with that row. Without a
+timeline the network is a fifth smaller; a step is then faster. Steps, sampler and captions are
+equal. The networks are half as wide as the shipped mover's and see a twelfth of the frames that it
+saw; so the numbers say what a choice is worth, and not how good a mover can be.
 Source: MoFusion 3; choices are ours
 """
 
@@ -22,11 +19,8 @@ from motiondiff_edu.baselines.text import BagConfig, RegressionConfig
 from motiondiff_edu.metrics import texts
 from motiondiff_edu.metrics.texts import KINDS as RECOGNISED
 from motiondiff_edu.metrics.texts import actions
-from motiondiff_edu.mofusion import MoFusion
 from motiondiff_edu.motion import moving_frame
 from motiondiff_edu.performers.mover import Mover
-from motiondiff_edu.performers.networks import register
-from motiondiff_edu.performers.planned_mofusion import PlannedConfig, PlannedMoFusion
 from motiondiff_edu.pretrained.judges import judges
 from motiondiff_edu.recipes.mover import MOVER, MoverRecipe, train_mover
 
@@ -42,23 +36,6 @@ SMALL = replace(MOVER, config=SIZES, steps=2400, plan_steps=0, frames=1024)
 ALONE = replace(SIZES.of_one(), D=moving_frame.D)
 
 
-@dataclass(frozen=True)
-class ConvolutionsConfig(PlannedConfig):
-    """The sizes of `PlannedConfig`; depths count for nothing."""
-
-
-class Convolutions(PlannedMoFusion):
-    """The mover with the paper's U-Net, where frames see each other by convolutions alone."""
-
-    def __init__(self, config: ConvolutionsConfig):
-        super().__init__(config)
-        for network in (self.planner, self.performer):
-            network.unet = MoFusion(network.config)
-
-
-register("mover", Convolutions, ConvolutionsConfig)
-
-
 def network_of(config: type) -> dict:
     """Another network with the sizes of the mover without a timeline."""
     return {"config": config(**vars(ALONE))}
@@ -68,12 +45,6 @@ VARIANTS = {
     "ours": Variant("the mover's recipe", {}),
     "no-timeline": Variant("no timeline", {"config": ALONE}),
     "no-kinematic": Variant("no kinematic losses", {"kinematic": None}),
-    "shallow": Variant("no further layers in the middle", {"config": replace(SIZES, depth=0)}),
-    "no-self-attention": Variant(
-        "no self-attention either",
-        {"config": ConvolutionsConfig(**vars(SIZES))},
-        {"shallow": "shallow"},
-    ),
     "columns-alike": Variant("all columns alike, without weights by their spread", {"metres": 0.0}),
     "cosine": Variant("the cosine schedule as it is", {"snr": 1.0}),
     "bag": Variant("no timeline, a bag of words", network_of(BagConfig)),
