@@ -15,6 +15,7 @@ from torch import Tensor
 from .. import rollout
 from ..conditions.control import as_long
 from ..ddpm import Denoiser, Generators, ddim_steps, draw, sample_steps
+from ..metrics.strays import strays
 from ..modiff import MoDiff, MoDiffConfig
 from ..motion.arguments import checked_samples, checked_seconds, checked_steps
 from ..motion.motion import Motion, MotionWarning, as_motion
@@ -101,10 +102,13 @@ class Walker(Performer):
         if words := in_words(start, jump, unlike):
             warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
         path, name = start.path[T_h:], f"{motion.name}, continued"
-        made = [
-            resize_motion(Motion(world, FPS, root=path, source=name), start.size)
-            for world, _ in both
-        ]
+        made = []
+        for world, _ in both:
+            notes = tuple(strays(world, start.given))
+            for words in notes:
+                warnings.warn(f"{name}: {words}", MotionWarning, stacklevel=2)
+            one = Motion(world, FPS, root=path, source=name, notes=notes)
+            made.append(resize_motion(one, start.size))
         return made if samples > 1 else made[0]
 
     def denoiser(self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]) -> Denoiser:

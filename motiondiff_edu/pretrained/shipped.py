@@ -15,6 +15,7 @@ from ..editing import reconstruct as reconstruction
 from ..editing.by_words import STRENGTH
 from ..editing.inbetween import clean_samples
 from ..editing.plausible import each_until_plausible, longest_glide
+from ..metrics.strays import strays
 from ..motion.arguments import checked_count, checked_samples, checked_seed, checked_strength
 from ..motion.cleanup import Body, clean_up, floor_under
 from ..motion.known import checked_known
@@ -117,7 +118,14 @@ def reconstruct(
         reconstruction.reconstruct(walker, motion.positions, known, generator=draw, watch=watch)
         for draw in draws
     ]
-    made = [_made(motion, known, positions, "reconstructed") for positions in made]
+    doubt = reconstruction.other_side_in_doubt(walker, made[0], known, generators(seed, 1, 1)[0])
+    for words in filter(None, [doubt]):
+        warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
+    given = np.where(known[..., None], motion.positions, np.nan)
+    made = [
+        _looked_at(_made(motion, known, positions, "reconstructed"), given, ~known, doubt)
+        for positions in made
+    ]
     return made if samples > 1 else made[0]
 
 
@@ -194,6 +202,16 @@ def _warn_of_glides(motion: Motion, made: list[Float[np.ndarray, "T 21 3"]]) -> 
             MotionWarning,
             stacklevel=3,
         )
+
+
+def _looked_at(
+    made: Motion, given: Float[np.ndarray, "T 21 3"], new: Bool[np.ndarray, "T 21"], *said: str
+) -> Motion:
+    """The motion with notes: where it leaves what was given, which is a MotionWarning, too."""
+    found = strays(made.positions, given, new)
+    for words in found:
+        warnings.warn(f"{made.name}: {words}", MotionWarning, stacklevel=3)
+    return replace(made, notes=(*made.notes, *filter(None, said), *found))
 
 
 @lru_cache(maxsize=4)  # nobody else gets them, so one copy serves all verbs

@@ -212,3 +212,36 @@ def test_known_joints_that_are_unlike_the_training_are_named_if_their_frame_has_
     given[12, 3 * 7] = 10 * 3**0.5
     with pytest.warns(MotionWarning, match=r"unlike the walker's training .*RightFoot 10.0\)"):
         module.warn_of_unlike(scaler, given, known)
+
+
+@pytest.mark.parametrize("misses, told", [(0.03, False), (0.4, True)])
+def test_the_limb_of_the_other_side_says_whether_a_still_limb_is_as_near(monkeypatch, misses, told):
+    """It is hidden, and what the walker makes of it is compared with its mean pose."""
+    world = walk(np.tile([1.1, 0.0, 0.0], (60, 1)), seed=2).world()
+    known = np.ones((60, J), bool)
+    right = [joint_index(f"Right{name}") for name in ("Arm", "ForeArm", "Hand", "HandIndex1")]
+    left = [joint_index(f"Left{name}") for name in ("Arm", "ForeArm", "Hand", "HandIndex1")]
+    known[20:40, right] = False
+    asked = []
+
+    def missed(walker, positions, shown, *, generator):
+        asked.append(shown)
+        return np.where(shown[..., None], positions, positions + [0, misses, 0])
+
+    monkeypatch.setattr(module, "reconstruct", missed)
+    words = module.other_side_in_doubt(None, world, known, torch.Generator())
+    (shown,) = asked
+    assert (~shown).sum() == 20 * 4 and not shown[20:40, left].any() and shown[:20].all()
+    assert bool(words) == told and (
+        not told or "LeftHandIndex1, which is given, is missed by 40" in words
+    )
+
+
+def test_where_both_sides_are_missing_nothing_can_be_tested():
+    world = walk(np.tile([1.1, 0.0, 0.0], (30, 1)), seed=2).world()
+    known = np.ones((30, J), bool)
+    known[:, [joint_index("LeftHand"), joint_index("RightHand")]] = False
+    assert module.other_side_in_doubt(None, world, known, torch.Generator()) == ""
+    known[:] = True
+    known[5] = False  # a whole frame: pelvis and head have no other side
+    assert module.other_side_in_doubt(None, world, known, torch.Generator()) == ""
