@@ -6,7 +6,7 @@ import argparse
 from . import outputs
 
 HELP = "do what a sentence says"
-EXAMPLE = 'act "walks forward, then waves with the left hand" --seconds 6 --out act.bvh'
+EXAMPLE = 'act "walks forward, then waves with the left hand" --out act.bvh'
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -15,9 +15,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--seconds",
         type=float,
-        default=6.0,
         metavar="S",
-        help="the length of the motion, from 2 to 10 s (default: 6)",
+        help="the length of the motion, from 2 to 10 s (default: what its acts take)",
     )
     parser.add_argument(
         "--guidance",
@@ -36,8 +35,8 @@ def run(args: argparse.Namespace) -> None:
     from .. import load
     from ..performers.mover import checked_length
 
-    checked_length(args.seconds)
-
+    if args.seconds is not None:
+        checked_length(args.seconds)
     how = {"seconds": args.seconds, "guidance": args.guidance}
     made = load("mover").act(args.text, samples=args.samples, seed=args.seed, **how)
     outputs.write_all(made, paths)

@@ -11,7 +11,7 @@ Parts = tuple[tuple["Act", ...], ...]
 
 @dataclass(frozen=True)
 class Act:
-    """One verb, and what is said of it; an empty word says nothing.
+    """One verb, and what is said of it; an empty word, and a count of 0, say nothing.
 
     side  "left", "right" or "both";  speed  "slowly" or "quickly"
     direction  "forward", "aside" or "around"
@@ -19,7 +19,7 @@ class Act:
 
     verb: str
     side: str = ""
-    count: int = 1
+    count: int = 0
     speed: str = ""
     direction: str = ""
 
@@ -86,7 +86,8 @@ PLAIN = {
     ),
     ("point", "aside"): ("points to the {side}", "pointing to the {side}"),
 }
-TIMES = {1: "", 2: "twice", 3: "three times", 4: "four times"}
+TIMES = {0: "", 1: "once", 2: "twice", 3: "three times", 4: "four times"}
+USUALLY = {"clap": 3}  # times, where nothing is said of them
 
 
 def in_words(parts: Parts) -> str:
@@ -109,8 +110,8 @@ def act_in_words(act: Act, form: int) -> str:
     both = act.side == "both"
     limb = "both arms" if both else f"the {act.side} arm"
     hand = "both hands" if both else f"the {act.side} hand"
-    once = "once" if KINDS[act.verb].most > 1 else ""
-    words = (verb.format(side=act.side, limb=limb, hand=hand), TIMES[act.count] or once, act.speed)
+    times = TIMES[act.count or USUALLY.get(act.verb, 0)]
+    words = (verb.format(side=act.side, limb=limb, hand=hand), times, act.speed)
     return " ".join(word for word in words if word)
 
 
@@ -132,7 +133,9 @@ def seconds_of(parts: Parts) -> float:
     total = BESIDE
     for part in parts:
         each = [
-            act.count * PERIODS.get(act.verb, ON_THE_WAY) * FACTORS.get(act.speed, 1.05)
+            (act.count or USUALLY.get(act.verb, 1))
+            * PERIODS.get(act.verb, ON_THE_WAY)
+            * FACTORS.get(act.speed, 1.05)
             for act in part
         ]
         ways = any(KINDS[act.verb].part == "way" for act in part)

@@ -388,7 +388,7 @@ def made(head: Head, notes: list[str]) -> Iterator[tuple[Head, Act]]:
     kind = KINDS[verb]
     if verb == "punch" and side == "both":
         for one in ONE:
-            yield head, Act(verb, one, 1, *said(kind, head, notes))
+            yield head, Act(verb, one, 0, *said(kind, head, notes))
         return
     side = allowed_side(verb, kind, side, notes)
     count = allowed_count(verb, kind, head.count, notes)
@@ -423,4 +423,4 @@ def allowed_count(verb: str, kind: Kind, count: int, notes: list[str]) -> int:
     if count > kind.most and kind.part != "way":
         most = f"{kind.most} times at most" if kind.most > 1 else "once"
         notes.append(f"{verb!r} is done {most}, not {count} times")
-    return max(1, min(count, kind.most))
+    return min(count, kind.most) if kind.most > 1 else 0

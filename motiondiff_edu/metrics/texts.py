@@ -468,7 +468,8 @@ def shortfalls(phrases: Phrases, found: Sequence[Recognised]) -> list[str]:
     """What is asked for and not to be seen, in words; nothing where all is.
 
     Acts, their sides and counts, their directions, and the order of the phrases. Standing is no
-    action. A jump without a direction may go anywhere, and an arm that is raised once may stay up.
+    action, and a count of 0 says nothing. A jump without a direction may go anywhere, and an arm
+    that is raised once may stay up.
     """
     asked = [[act for act in phrase if act.verb != "stand"] for phrase in phrases]
     matched, more = _matched(asked, found)
@@ -479,15 +480,15 @@ def shortfalls(phrases: Phrases, found: Sequence[Recognised]) -> list[str]:
             if act in shown:
                 shown.remove(act)
                 continue
-            held = [one for one in more if one.verb == "hold" and one.side == act.side]
-            if act.verb == "raise" and act.count == 1 and held:
+            held = [one for one in more if one.verb == "hold" and act.side in ("", one.side)]
+            if act.verb == "raise" and act.count <= 1 and held:
                 more = [one for one in more if one is not held[0]]
                 continue
             words.append(f"{told(act)} is not to be seen")
     for _, act, one in matched:
         if act.side and one.side != act.side:
             words.append(f"{told(act)} is to be seen on the {one.side} side")
-        elif act.verb in COUNTED and one.count != act.count:
+        elif act.verb in COUNTED and act.count and one.count != act.count:
             words.append(f"{told(act)} is to be seen {one.count} times, and not {act.count}")
         elif act.verb in DIRECTED and one.direction != act.direction != "":
             words.append(f"{told(act)} is to be seen in another direction")

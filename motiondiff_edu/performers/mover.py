@@ -5,6 +5,7 @@ Notebook: 16, 17
 """
 
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -61,6 +62,28 @@ def lacking(asked: tuple, positions: Float[np.ndarray, "T 21 3"]) -> list[str]:
         return []
     phrases = [[texts.Asked(a.verb, a.side, a.count, a.direction) for a in part] for part in asked]
     return texts.shortfalls(phrases, texts.actions(positions))
+
+
+def until_shown(
+    asked: tuple,
+    draw: Callable[[list[int], int], list[Float[np.ndarray, "T 21 3"]]],
+    count: int,
+    tries: int,
+) -> tuple[list[Float[np.ndarray, "T 21 3"]], list[list[str]]]:
+    """Motions that show what was asked for, or of `tries` draws the one that shows most of it.
+
+    `draw(which, again)` makes those of the `count` samples that are named, for the first time (0)
+    or again (1, 2, ...). Returned are the motions, and what each of them lacks.
+    """
+    acts = draw(list(range(count)), 0)
+    wrong = [lacking(asked, act) for act in acts]
+    for again in range(1, tries):
+        which = [k for k in range(count) if wrong[k]]
+        for k, act in zip(which, draw(which, again) if which else [], strict=True):
+            others = lacking(asked, act)
+            if len(others) < len(wrong[k]):
+                acts[k], wrong[k] = act, others
+    return acts, wrong
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -238,14 +261,7 @@ class Mover(Performer):
             draws = generators(seed, count, *([again] if again else []))
             return self._acts(found, frames, [draws[k] for k in which], steps, guidance, bars)
 
-        acts = draw(list(range(count)), 0)
-        wrong = [lacking(found.asked, act) for act in acts]
-        for again in range(1, tries):
-            which = [k for k in range(count) if wrong[k]]
-            for k, act in zip(which, draw(which, again) if which else [], strict=True):
-                others = lacking(found.asked, act)
-                if len(others) < len(wrong[k]):
-                    acts[k], wrong[k] = act, others
+        acts, wrong = until_shown(found.asked, draw, count, tries)
         made = []
         for act, words in zip(acts, wrong, strict=True):
             notes = (f"asked: {found.text:.80}; but {'; '.join(words)}",) if words else ()

@@ -23,13 +23,14 @@ from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HIPS, TOES
 from ..performers.inbetweener import Inbetweener
-from ..performers.mover import LONGEST, SHORTEST, Mover
+from ..performers.mover import LONGEST, SHORTEST, TRIES, Mover, until_shown
 from ..performers.performer import STEPS, bar, generators
 from ..performers.walker import Walker
 from . import checkpoints
 from .checkpoints import P
 
 LEARNT = 5.0  # s: the windows of the in-betweener's training
+STRONGER = 0.15  # of the noise, each time that an edit is drawn again
 
 
 def inbetween(
@@ -137,6 +138,7 @@ def edit(
     strength: float = STRENGTH,
     samples: int = 1,
     seed: int = 0,
+    tries: int = TRIES,
     progress: bool = True,
 ) -> Motion | list[Motion]:
     """Change a motion by a sentence, with the shipped mover.
@@ -146,9 +148,10 @@ def edit(
     pelvis is known from the first frame on, the path stays, too, and they are exactly where they
     were. Bones have the lengths of the motion's, and feet that stand do not slide
     (`motion/cleanup`). `strength`, above 0 and up to 1, is the share of the noise: higher values
-    keep less of the motion; 1 keeps only the known joints. With `samples` above 1, the result is a
-    list with this many motions; the first is that of samples=1. A MotionWarning says where the feet
-    slide, and did not before.
+    keep less of the motion; 1 keeps only the known joints. What does not show the acts of the
+    sentence is drawn again, with more and more noise, `tries` times in all; a MotionWarning says
+    what is not to be seen. With `samples` above 1, the result is a list with this many motions; the
+    first is that of samples=1. A MotionWarning says where the feet slide, and did not before.
     Raises MotionError if motion and mask do not fit, or the motion is shorter or longer than those
     of the training, TextError for a text that cannot be read, and ValueError for numbers out of
     range.
@@ -172,20 +175,34 @@ def edit(
     count = checked_samples(samples)
     checked_seed(seed)
     checked_strength(strength)
+    tries = checked_count(tries, "tries")
     mover = _shipped(Mover)
-    for note in mover.reader.read(text).notes:
+    found = mover.reader.read(text)
+    for note in found.notes:
         warnings.warn(note, MotionWarning, stacklevel=2)
-    made = by_words.edit_by_words(
-        mover, motion.positions, text, mask, strength=strength, samples=count,
-        generator=generators(seed, count), watch=bar("editing", shown=progress),
-    )  # fmt: skip
     nothing = np.zeros((len(motion), len(motion.skeleton)), bool)
     kept = nothing if mask is None else mask
     body, floor = Body.of(motion.positions), floor_under(motion.positions)
-    made = [clean_up(one, FPS, kept, body=body, floor=floor) for one in made]
+
+    def draw(which: list[int], again: int) -> list[Float[np.ndarray, "T 21 3"]]:
+        draws = generators(seed, count, *([again] if again else []))
+        made = by_words.edit_by_words(
+            mover, motion.positions, text, mask, strength=min(1.0, strength + again * STRONGER),
+            samples=len(which), generator=[draws[k] for k in which],
+            watch=bar("editing", shown=progress),
+        )  # fmt: skip
+        return [clean_up(one, FPS, kept, body=body, floor=floor) for one in made]
+
+    made, wrong = until_shown(found.asked, draw, count, tries)
     _warn_of_glides(motion, made)
-    made = [_made(motion, nothing, positions, f"edited: {text.strip():.40}") for positions in made]
-    return made if samples > 1 else made[0]
+    edited = []
+    for positions, words in zip(made, wrong, strict=True):
+        notes = (f"asked: {text.strip():.80}; but {'; '.join(words)}",) if words else ()
+        for note in notes:
+            warnings.warn(f"{motion.name}: {note}", MotionWarning, stacklevel=2)
+        one = _made(motion, nothing, positions, f"edited: {text.strip():.40}")
+        edited.append(replace(one, notes=(*found.notes, *notes)))
+    return edited if samples > 1 else edited[0]
 
 
 def _warn_of_glides(motion: Motion, made: list[Float[np.ndarray, "T 21 3"]]) -> None:

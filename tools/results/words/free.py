@@ -1,0 +1,111 @@
+"""Sentences as people type them, and what `act` makes of them.
+
+words.free_right    all that is asked for is to be seen, in its order, with sides and counts
+words.free_refused  the sentence is refused
+words.free_unsaid   something asked for is not to be seen, and nothing is said
+
+`free_sentences.json` has 200 sentences, written before the mover was trained by somebody who had
+not seen the grammar, each with what a careful person must see. What the figure cannot do at all
+counts as asked for, too: it is never right, and must be said. Judged by a network that the redraws
+of `act` do not know (`second.py`); how well that one sees the data's own clips stands beside it.
+"""
+
+import json
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from data_synth.actions import clips
+from motiondiff_edu.conditions.text import TextError
+from motiondiff_edu.metrics.texts import Asked, Recognised, shortfalls
+from motiondiff_edu.performers.mover import Mover
+
+from ..walks.scores import Measure, measure_of
+from .second import tagged, trained
+
+FREE = Path(__file__).with_name("free_sentences.json")
+KNOWN = 150  # clips of the data, on which the judge is judged
+SPEED = ("slowly", "quickly")
+
+
+@dataclass(frozen=True)
+class Tried:
+    """A sentence: whether it was refused, what is missing, and whether anything was said."""
+
+    text: str
+    refused: bool
+    missing: tuple[str, ...]
+    said: tuple[str, ...]
+
+    @property
+    def right(self) -> bool:
+        return not self.refused and not self.missing
+
+    @property
+    def unsaid(self) -> bool:
+        return not self.refused and bool(self.missing) and not self.said
+
+
+def sentences() -> list[dict]:
+    """The sentences with what they ask for."""
+    return json.loads(FREE.read_text(encoding="utf-8"))
+
+
+def asked_of(record: dict) -> list[list[Asked]]:
+    """The acts of a record as a recogniser takes them; a vague plural has no count."""
+    return [
+        [Asked(act["verb"], act.get("side", ""), act.get("count", 0)) for act in step]
+        for step in record["steps"]
+    ]
+
+
+def missing_of(record: dict, found: list[Recognised]) -> list[str]:
+    """What is not to be seen of a record."""
+    words = list(record["beyond"])
+    words += shortfalls(asked_of(record), found)
+    for act in (act for step in record["steps"] for act in step if "min_count" in act):
+        times = [one.count for one in found if one.verb == act["verb"]]
+        if times and max(times) < act["min_count"]:
+            words.append(f"{act['verb']!r} is to be seen {max(times)} times")
+    return words
+
+
+def tried(mover: Mover, record: dict, judge, seed: int) -> Tried:
+    """What `act` makes of one sentence."""
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        try:
+            made = mover.act(record["text"], seed=seed, progress=False)
+        except TextError:
+            return Tried(record["text"], True, (), ())
+    missing = missing_of(record, judge(made.positions))
+    notes = tuple(str(one.message) for one in said)
+    return Tried(record["text"], False, tuple(missing), notes)
+
+
+def free_measures(mover: Mover, most: int | None = None, show=None) -> list[Measure]:
+    """All measures; `show` gets each sentence that was tried."""
+    model, scaler = trained()
+    known = [one.acted for one in clips(KNOWN, 301, "test")]
+    seen = []
+    for acted in known:
+        phrases = [[Asked(a.verb, a.side, a.count) for a in p.acts] for p in acted.sentence]
+        seen.append(not shortfalls(phrases, tagged(model, scaler, acted.positions)))
+    found = [
+        tried(mover, record, lambda x: tagged(model, scaler, x), k)
+        for k, record in enumerate(sentences()[:most])
+    ]
+    for one in found if show else ():
+        show(one)
+
+    def share(name: str, rows: list[bool]) -> Measure:
+        return measure_of(name, "share", np.mean, np.array(rows, float))
+
+    return [
+        share("free_right", [one.right for one in found]),
+        share("free_refused", [one.refused for one in found]),
+        share("free_unsaid", [one.unsaid for one in found]),
+        share("free_judge", seen),
+    ]
