@@ -69,6 +69,8 @@ def reach(made: Points, given: Given, new: Bool[np.ndarray, "T 21"]) -> str:
 
 def speed(made: Points, given: Given, new: Bool[np.ndarray, "T 21"]) -> str:
     """A joint that is much faster than any of the given motion."""
+    if len(made) < 2:
+        return ""
     steps = np.linalg.norm(np.diff(made, axis=0), axis=-1) * FPS
     had = np.nanmax(np.linalg.norm(np.diff(given, axis=0), axis=-1), initial=0.0) * FPS
     steps = np.where((new[1:] | new[:-1]) & np.isfinite(steps), steps, 0.0)
