@@ -9,6 +9,7 @@ Notebook: 11
 import re
 import warnings
 from contextlib import suppress
+from io import BytesIO
 from pathlib import Path
 from shlex import quote
 from tempfile import TemporaryDirectory
@@ -21,11 +22,13 @@ from jaxtyping import Float
 from torch import Tensor
 
 from ..motion.arguments import is_number
+from .mp3_frames import frame_at, promised, with_length
 from .music import SAMPLE_RATE
 
 RATES = (1_000, 768_000)  # Hz: a sample rate in kHz is outside
 SHORTEST = 1.0  # seconds
 MOST = 3600.0  # seconds that are read; a damaged header may promise years
+MOST_ADDED = 2 * 1152  # samples by which an MP3 may be longer than it says
 PADDING = 0.1  # seconds at the end of an MP3 that its encoder added and the reader leaves out
 # a file whose largest sample is below this, 80 dB under full scale, counts as silent
 SILENT = 1e-4
@@ -180,6 +183,8 @@ def _decode(path: Path) -> tuple[Float[np.ndarray, "N channels"], int, str]:
     import soundfile
 
     try:
+        if (counted := _decode_counted(path)) is not None:
+            return counted
         with soundfile.SoundFile(path) as file:
             if file.frames > MOST * file.samplerate:
                 channels = _in_blocks(path)
@@ -190,9 +195,41 @@ def _decode(path: Path) -> tuple[Float[np.ndarray, "N channels"], int, str]:
                 channels = file.read(dtype="float32", always_2d=True)
             except soundfile.LibsndfileError:
                 return _in_blocks(path), file.samplerate, "is damaged: the rest cannot be read"
+            except (ValueError, RuntimeError):  # an encoding in which it cannot seek
+                return _in_order(path), file.samplerate, ""
+            if not len(channels) and (whole := finished_wav(path.read_bytes())):
+                with soundfile.SoundFile(BytesIO(whole)) as mended:
+                    channels = mended.read(dtype="float32", always_2d=True)
+                return channels, mended.samplerate, ""
             return channels, file.samplerate, _lost(file, len(channels))
     except soundfile.LibsndfileError as error:
         raise AudioError(f"{path.name} {_other_kind(path, error)}") from None
+
+
+def _decode_counted(path: Path) -> tuple[Float[np.ndarray, "N channels"], int, str] | None:
+    """The same for an MP3 whose first frame says nothing of its length, or what is not so.
+
+    None for other files.
+    """
+    import soundfile
+
+    with path.open("rb") as file:
+        head = file.read(10)
+    if not (head[:3] == b"ID3" or frame_at(head + bytes(4), 0)):
+        return None
+    raw = path.read_bytes()
+    whole, samples = with_length(raw)
+    said = promised(raw)
+    if not whole or abs(said - samples) <= MOST_ADDED:
+        return None
+    with soundfile.SoundFile(BytesIO(whole)) as file:
+        rate, most = file.samplerate, round(MOST * file.samplerate)
+        channels = file.read(min(samples, most), dtype="float32", always_2d=True)
+    if samples > most:
+        return channels, rate, "is longer than an hour"
+    if said > samples:
+        return channels, rate, f"is cut off: its header promises {said / rate:.2f} s"
+    return channels, rate, ""
 
 
 def _in_blocks(path: Path) -> Float[np.ndarray, "N channels"]:
@@ -210,6 +247,36 @@ def _in_blocks(path: Path) -> Float[np.ndarray, "N channels"]:
                 blocks.append(block)
                 left -= len(block)
     return np.concatenate(blocks)
+
+
+def _in_order(path: Path) -> Float[np.ndarray, "N channels"]:
+    """The samples of a file in which one cannot seek, from the first to the last."""
+    import soundfile
+
+    with soundfile.SoundFile(path) as file:
+        blocks = [np.zeros((0, file.channels), np.float32)]
+        left = round(MOST * file.samplerate)
+        while left > 0:
+            block = np.empty((min(BLOCK, left), file.channels), np.float32)
+            count = file.buffer_read_into(block, "float32")
+            if not count:
+                break
+            blocks.append(block[:count])
+            left -= count
+    return np.concatenate(blocks)
+
+
+def finished_wav(raw: bytes) -> bytes:
+    """A WAV whose header was never finished, with the lengths that it has; b"" for another file.
+
+    A program that is stopped while it records leaves a length of 0 for the sound that follows.
+    """
+    at = raw.find(b"data", 12)
+    there = len(raw) - at - 8
+    if raw[:4] != b"RIFF" or at < 0 or there < 1 or any(raw[at + 4 : at + 8]):
+        return b""
+    size = (len(raw) - 8).to_bytes(4, "little")
+    return raw[:4] + size + raw[8 : at + 4] + there.to_bytes(4, "little") + raw[at + 8 :]
 
 
 def _lost(file, there: int) -> str:

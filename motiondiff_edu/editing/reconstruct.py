@@ -102,9 +102,9 @@ def other_side_in_doubt(
     if misses <= still:
         return ""
     return (
-        f"{JOINTS[others[-1]]}, which is given, is missed by {100 * misses:.0f} cm when it is hidden "
-        f"as well, and by {100 * still:.0f} cm if it stays in its mean pose: what is reconstructed "
-        "on the other side is no nearer than a motionless limb"
+        f"{JOINTS[others[-1]]}, which is given, is missed by {100 * misses:.0f} cm when it is "
+        f"hidden as well, and by {100 * still:.0f} cm if it stays in its mean pose: what is "
+        "reconstructed on the other side is no nearer than a motionless limb"
     )
 
 

@@ -14,6 +14,7 @@ from ..motion.root_frame import FPS, body_heading, forward_left
 from ..motion.skeleton import HIPS, JOINTS, joint_index
 
 Points = Float[np.ndarray, "T 21 3"]
+Given = Float[np.ndarray, "N 21 3"]
 ENDS = [joint_index(side + part) for side in ("Left", "Right") for part in ("Hand", "Foot")]
 WAYS = ("above", "ahead of", "to the side of")  # of where the given motion has it
 REACH = (0.3, 0.35, 0.35)  # metres, in these directions, before it is told
@@ -21,7 +22,7 @@ SPEED, FAST = 1.6, 4.0  # times the fastest of the given motion, and at least so
 UNDER = 0.05  # metres: deeper than this a joint is in the floor
 
 
-def strays(made: Points, given: Points, new: Bool[np.ndarray, "T 21"] | None = None) -> list[str]:
+def strays(made: Points, given: Given, new: Bool[np.ndarray, "T 21"] | None = None) -> list[str]:
     """Where a motion leaves the given one, in words, the worst of each kind; [] where it does not.
 
     new   True for what was generated (default: all); the rest is not judged
@@ -30,7 +31,7 @@ def strays(made: Points, given: Points, new: Bool[np.ndarray, "T 21"] | None = N
     return [words for ask in (reach, speed, floor) if (words := ask(made, given, new))]
 
 
-def about_the_pelvis(points: Points) -> Float[np.ndarray, "T 21 3"]:
+def about_the_pelvis(points: Points) -> Points:
     """Up, ahead and aside (to either side) of the pelvis, in the heading of the body."""
     forward, left = forward_left(body_heading(points))
     own = points - points[:, HIPS][:, None]
@@ -49,7 +50,7 @@ def with_height(flat: Float[np.ndarray, "T 2"]) -> Float[np.ndarray, "T 3"]:
     return np.stack([flat[:, 0], 0 * flat[:, 0], flat[:, 1]], -1)
 
 
-def reach(made: Points, given: Points, new: Bool[np.ndarray, "T 21"]) -> str:
+def reach(made: Points, given: Given, new: Bool[np.ndarray, "T 21"]) -> str:
     """A hand or foot that goes much farther than in any given frame."""
     had = about_the_pelvis(given)[:, ENDS]
     most = np.where(np.isfinite(had), had, -np.inf).max(0)
@@ -66,8 +67,10 @@ def reach(made: Points, given: Points, new: Bool[np.ndarray, "T 21"]) -> str:
     )
 
 
-def speed(made: Points, given: Points, new: Bool[np.ndarray, "T 21"]) -> str:
+def speed(made: Points, given: Given, new: Bool[np.ndarray, "T 21"]) -> str:
     """A joint that is much faster than any of the given motion."""
+    if len(made) < 2:
+        return ""
     steps = np.linalg.norm(np.diff(made, axis=0), axis=-1) * FPS
     had = np.nanmax(np.linalg.norm(np.diff(given, axis=0), axis=-1), initial=0.0) * FPS
     steps = np.where((new[1:] | new[:-1]) & np.isfinite(steps), steps, 0.0)
@@ -81,7 +84,7 @@ def speed(made: Points, given: Points, new: Bool[np.ndarray, "T 21"]) -> str:
     )
 
 
-def floor(made: Points, given: Points, new: Bool[np.ndarray, "T 21"]) -> str:
+def floor(made: Points, given: Given, new: Bool[np.ndarray, "T 21"]) -> str:
     """A joint deep under the lowest one of the given motion."""
     depth = np.nanmin(given[..., 1]) - made[..., 1]
     depth = np.where(new & np.isfinite(depth), depth, -np.inf)

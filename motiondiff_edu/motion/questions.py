@@ -3,7 +3,6 @@
 Each question is answered in words, "" if nothing is wrong. They are asked of geometry alone: feet
 that bear a body stand still, nobody floats for longer than a jump, bones keep their lengths, and
 limbs swing neither like those of an insect nor as under water. Positions are in metres, y up.
-Notebook: 00
 """
 
 from collections.abc import Callable, Iterator

@@ -6,7 +6,6 @@ other axes than the motion, and a person may lie, or stand on the hands. Four ar
     the figure, if it is upright along one axis in most frames
     the feet, if they bear the figure: one at least stands still on the floor while the head moves
     the floor, if the lowest points of the motion are level, or at 0
-Notebook: 00
 """
 
 from collections.abc import Mapping, Sequence

@@ -229,7 +229,7 @@ def test_the_limb_of_the_other_side_says_whether_a_still_limb_is_as_near(monkeyp
         return np.where(shown[..., None], positions, positions + [0, misses, 0])
 
     monkeypatch.setattr(module, "reconstruct", missed)
-    words = module.other_side_in_doubt(None, world, known, torch.Generator())
+    words = module.other_side_in_doubt(standing(), world, known, torch.Generator())
     (shown,) = asked
     assert (~shown).sum() == 20 * 4 and not shown[20:40, left].any() and shown[:20].all()
     assert bool(words) == told and (
@@ -241,7 +241,7 @@ def test_where_both_sides_are_missing_nothing_can_be_tested():
     world = walk(np.tile([1.1, 0.0, 0.0], (30, 1)), seed=2).world()
     known = np.ones((30, J), bool)
     known[:, [joint_index("LeftHand"), joint_index("RightHand")]] = False
-    assert module.other_side_in_doubt(None, world, known, torch.Generator()) == ""
+    assert module.other_side_in_doubt(standing(), world, known, torch.Generator()) == ""
     known[:] = True
     known[5] = False  # a whole frame: pelvis and head have no other side
-    assert module.other_side_in_doubt(None, world, known, torch.Generator()) == ""
+    assert module.other_side_in_doubt(standing(), world, known, torch.Generator()) == ""
