@@ -106,6 +106,9 @@ def copies_of(folder: Path, only: list[str]) -> dict[tuple[str, str], list[Path]
             f"{folder} has no copies of the notebooks; expected for instance "
             f"{folder / 'a_student' / '02_noise.ipynb'}"
         )
+    students = {name_of(path.name) for path in folder.glob("[!.]*") if os.path.isdir(path)}
+    if none := sorted(students - {who for who, _ in found}):
+        progress(f"no copies were found in the folders: {', '.join(none)}")
     return {key: sorted(paths, key=_changed, reverse=True) for key, paths in found.items()}
 
 

@@ -240,6 +240,14 @@ def test_a_notebook_that_the_course_does_not_have_is_left_out(tmp_path, capsys):
     assert "the course has no exercises for these copies" in told
 
 
+def test_a_student_without_a_copy_is_named(tmp_path, capsys):
+    for who in ("ann", "bo\x1b"):
+        (tmp_path / who).mkdir()
+    (tmp_path / "ann" / NAME).write_text("{}")
+    assert list(collect.copies_of(tmp_path, [])) == [("ann", "02")]
+    assert capsys.readouterr().err == "no copies were found in the folders: bo\\x1b\n"
+
+
 def test_two_folders_never_have_one_name():
     names = ["a\x1b", "a\\x1b", "a\\\\x1b", os.fsdecode(b"\xe9"), "\\udce9", "Zoë"]
     shown = [collect.name_of(name) for name in names]
