@@ -541,7 +541,7 @@ TOLD = {
     "w.then(3)": "TypeError: this takes a Motion, not int",
     "w.all_but(13)": "TypeError: name the joints, such as 'LeftArm'",
     'md.keyframes("walk.bvh")': "TypeError: this takes a Motion, not str",
-    'md.read_motion("flat.npz", file_fps=30)': "`mapping` and `file_fps` are for BVH",
+    'md.read_motion("flat.npz", file_fps=30)': "`file_fps` is for .bvh, not for .npz",
     "w.resampled(1e6)": "above 0 and at most 10,000",
     "walker().walk(nan, ahead)": "Head in frame 5 has no position",
     "walker().walk(stick, ahead)": "has 2 joints; the course's networks know the 21",

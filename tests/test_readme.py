@@ -23,7 +23,10 @@ from motiondiff_edu.pretrained.checkpoints import available
 TEACHERS = ("TEACHING", "QUESTIONS", "CAPSTONE", "PILOT", "GLOSSARY")
 PAGES = [
     "README.md",
-    *(f"docs/{name}.md" for name in ("INSTALL", "USING", "EXTENDING", "BLENDER", *TEACHERS)),
+    *(
+        f"docs/{name}.md"
+        for name in ("INSTALL", "USING", "FROM_OTHERS", "EXTENDING", "BLENDER", *TEACHERS)
+    ),
 ]
 WALKED, SUNG = 2.0, 2.0  # seconds of the stand-ins
 SHIPPED = {"walker", "dancer", "inbetweener"}

@@ -12,7 +12,7 @@ EXAMPLE = "convert my_walk.bvh my_walk.mp4"
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of `convert`."""
-    parser.add_argument("file", type=Path, help="a motion: .bvh, .npz, .npy or .pkl")
+    outputs.add_file(parser)
     parser.add_argument("out", type=Path, help=f"the file to write: {outputs.endings()}")
     parser.add_argument(
         "--joints",
@@ -33,7 +33,7 @@ def run(args: argparse.Namespace) -> None:
     """Write the motion in the other format."""
     mapping = _mapping(args.joints)
     paths = outputs.output_paths(args.out, args.overwrite, source=args.file)
-    outputs.write_all(outputs.read(args.file, mapping, args.file_fps), paths)
+    outputs.write_all(outputs.read(args.file, args, mapping=mapping, file_fps=args.file_fps), paths)
 
 
 def _mapping(names: str) -> dict[str, str] | None:

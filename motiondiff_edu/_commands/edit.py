@@ -3,7 +3,6 @@ forward while clapping". --keep keeps a part of the body as it is, such as the l
 The sentence is put into quotes."""
 
 import argparse
-from pathlib import Path
 
 from . import outputs
 
@@ -13,7 +12,7 @@ EXAMPLE = 'edit my_walk.bvh "walks forward while clapping" --keep "lower body" -
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of `edit`."""
-    parser.add_argument("file", type=Path, help="a motion of 2 to 10 s: .bvh, .npz, .npy or .pkl")
+    outputs.add_file(parser, "a motion of 2 to 10 s")
     parser.add_argument("text", help="the sentence, in quotes")
     parser.add_argument(
         "--keep",
@@ -41,7 +40,7 @@ def run(args: argparse.Namespace) -> None:
     from ..editing.masks import body_part, checked_part
 
     part = checked_part(args.keep.lower().replace("-", " ")) if args.keep else None
-    motion = outputs.read(args.file)
+    motion = outputs.read(args.file, args)
     known = body_part(len(motion), part) if part else None
     how = {"strength": args.strength, "samples": args.samples, "seed": args.seed}
     outputs.write_all(edit(motion, args.text, known, **how), paths)

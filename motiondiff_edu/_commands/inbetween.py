@@ -2,7 +2,6 @@
 and the last frame are keyframes too."""
 
 import argparse
-from pathlib import Path
 
 from . import outputs
 
@@ -12,7 +11,7 @@ EXAMPLE = "inbetween my_walk.bvh --every 20 --samples 3 --out made.bvh"
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of `inbetween`."""
-    parser.add_argument("file", type=Path, help="a motion: .bvh, .npz, .npy or .pkl")
+    outputs.add_file(parser)
     parser.add_argument(
         "--every",
         type=int,
@@ -27,7 +26,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> None:
     """Fill in between the keyframes, and write the results."""
     paths = outputs.output_paths(args.out, args.overwrite, args.samples, args.file)
-    motion = outputs.read(args.file)
+    motion = outputs.read(args.file, args)
     from .. import inbetween, keyframes
 
     outputs.say("generating the frames between the keyframes")

@@ -12,7 +12,7 @@ EXAMPLE = "info my_walk.bvh"
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of `info`."""
-    parser.add_argument("file", type=Path, nargs="+", help="motions: .bvh, .npz, .npy or .pkl")
+    outputs.add_file(parser, "motions", several=True)
 
 
 def run(args: argparse.Namespace) -> None:
@@ -20,7 +20,7 @@ def run(args: argparse.Namespace) -> None:
     faulty = 0
     for path in args.file:
         try:
-            motion = outputs.read(path)
+            motion = outputs.read(path, args)
         except (ValueError, OSError) as error:
             if len(args.file) == 1:
                 raise
@@ -38,14 +38,17 @@ def lines_of(motion) -> list[str]:
     """Facts about a motion beside its length and frame rate."""
     import numpy as np
 
+    said = [motion.about] if motion.about else []
+    said += [f"note: {note}" for note in motion.notes]
     if not motion.known.all():
         missing = np.flatnonzero(~motion.known.all(0))
         names = ", ".join(motion.skeleton.names[j] for j in missing)
-        return [f"joints with missing positions: {names}"]
+        return [*said, f"joints with missing positions: {names}"]
     ground = motion.positions[:, 0][:, [0, 2]]
     distance = np.linalg.norm(np.diff(ground, axis=0), axis=1).sum()
     away, heights = np.linalg.norm(ground[-1] - ground[0]), motion.positions[..., 1]
     lines = [
+        *said,
         f"the root moves {distance:.2f} m, {distance / motion.seconds:.2f} m/s on average, and "
         f"ends {away:.2f} m from its start",
         f"the joints are between {heights.min():.2f} and {heights.max():.2f} m high",

@@ -4,6 +4,7 @@ A new option with a number needs a line in CHECKS.
 """
 
 import argparse
+import re
 import sys
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -113,13 +114,77 @@ def check_arguments(args: argparse.Namespace) -> None:
             check(value)
 
 
-def read(path: Path, mapping: dict[str, str] | None = None, file_fps: float | None = None):
-    """Read a motion. A line on stderr comes first, because the imports take a moment."""
+def add_file(
+    parser: argparse.ArgumentParser, what: str = "a motion", several=False, frames=True
+) -> None:
+    """Add the file to read (or several), --up, --unit and, for a part of it, --frames."""
+    parser.add_argument(
+        "file",
+        type=Path,
+        nargs="+" if several else None,
+        help=f"{what}: .bvh, .npz, .npy or .pkl",
+    )
+    parser.add_argument(
+        "--up",
+        default="",
+        metavar="AXIS",
+        help="the axis that points up in the file, such as z, or --up=-y (default: it is found)",
+    )
+    parser.add_argument(
+        "--unit",
+        default="",
+        help="the unit of an npz or npy: m, cm, mm, inches or feet (default: it is found)",
+    )
+    if frames:
+        parser.add_argument(
+            "--frames",
+            metavar="A-B",
+            help="only frames A to B, both included, at 20 frames a second (default: all)",
+        )
+
+
+def read(
+    path: Path,
+    args: argparse.Namespace,
+    mapping: dict[str, str] | None = None,
+    file_fps: float | None = None,
+):
+    """Read a motion, as the options of `add_file` say.
+
+    A line on stderr comes first, because the imports take a moment.
+    """
+    frames = spans(getattr(args, "frames", None))
+    if len(frames) > 1:
+        raise ValueError(f"--frames {args.frames}: give one span of frames")
     check_there(path)
     say(f"reading {path}")
     from .. import read_motion
 
-    return read_motion(path, mapping=mapping, file_fps=file_fps)
+    motion = read_motion(path, mapping=mapping, file_fps=file_fps, up=args.up, unit=args.unit)
+    ((first, end),) = frames
+    if end is not None and end > len(motion):
+        raise ValueError(
+            f"--frames {args.frames}: {path} has frames 0 to {len(motion) - 1}, at "
+            f"{motion.fps:g} frames/s"
+        )
+    return motion[first:end]
+
+
+def spans(words: str | None) -> list[tuple[int, int | None]]:
+    """(first, last + 1) of each span in "40-80,100-120", or of all frames.  Raises ValueError."""
+    if words is None:
+        return [(0, None)]
+    found: list[tuple[int, int | None]] = []
+    for piece in words.split(","):
+        match = re.fullmatch(r"\s*(\d+)\s*(?:-\s*(\d+)\s*)?", piece, re.ASCII)
+        if not match:
+            what = f"{piece!r} is not a span of frames such as 20-39, nor a single frame"
+            raise ValueError(f"--frames {words}: {what}")
+        first, last = int(match[1]), int(match[2] or match[1])
+        if first > last:
+            raise ValueError(f"--frames {words}: {first} comes after {last}")
+        found.append((first, last + 1))
+    return found
 
 
 def as_list(made: object) -> list:

@@ -13,7 +13,7 @@ EXAMPLE = "play my_walk.bvh more.bvh"
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of `play`."""
-    parser.add_argument("file", type=Path, nargs="+", help="motions: .bvh, .npz, .npy or .pkl")
+    outputs.add_file(parser, "motions", several=True)
     parser.add_argument("--out", type=Path, metavar="PAGE.html", help="where to save the page")
     parser.add_argument("--no-open", action="store_true", help="do not open the browser")
     outputs.add_overwrite(parser)
@@ -27,7 +27,7 @@ def run(args: argparse.Namespace) -> None:
         (args.out,) = outputs.output_paths(args.out, args.overwrite)
     for path in args.file:
         check_there(path)
-    motions = [outputs.read(path) for path in args.file]
+    motions = [outputs.read(path, args) for path in args.file]
     from .. import play
 
     play(motions, path=args.out, open_page=not args.no_open)

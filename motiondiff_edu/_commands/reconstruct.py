@@ -4,7 +4,6 @@ frame."""
 
 import argparse
 import re
-from pathlib import Path
 
 from . import outputs
 
@@ -17,7 +16,7 @@ EXAMPLE = (
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of `reconstruct`."""
-    parser.add_argument("file", type=Path, help="a motion: .bvh, .npz, .npy or .pkl")
+    outputs.add_file(parser, frames=False)
     parser.add_argument(
         "--missing",
         metavar="JOINTS",
@@ -26,6 +25,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--frames",
+        dest="missing_frames",
         metavar="A-B",
         help="where they are missing: frames A to B, both included, or one frame; separate several "
         "spans by commas (default: all frames)",
@@ -36,8 +36,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> None:
     """Make the missing joints, and write the results."""
-    frames = spans(args.frames)
-    if args.frames and not args.missing:
+    frames = outputs.spans(args.missing_frames)
+    if args.missing_frames and not args.missing:
         raise ValueError("--frames needs --missing, which names the joints")
     joints = [name for name in re.split(r"[,\s]+", " ".join(args.missing or [])) if name]
     if args.missing and not joints:
@@ -47,7 +47,7 @@ def run(args: argparse.Namespace) -> None:
     for name in joints:
         COURSE.index(name)  # an unknown one is told before anything is read
     paths = outputs.output_paths(args.out, args.overwrite, args.samples, args.file)
-    motion = outputs.read(args.file)
+    motion = outputs.read(args.file, args)
     from .. import reconstruct
 
     known = motion.known
@@ -57,20 +57,3 @@ def run(args: argparse.Namespace) -> None:
         raise ValueError(f"{args.file} lacks no joint: name some, such as --missing LeftHand")
     outputs.say(f"reconstructing {int((~known).sum())} joint positions")
     outputs.write_all(reconstruct(motion, known, samples=args.samples, seed=args.seed), paths)
-
-
-def spans(words: str | None) -> list[tuple[int, int | None]]:
-    """(first, last + 1) of each span in "40-80,100-120", or of all frames.  Raises ValueError."""
-    if words is None:
-        return [(0, None)]
-    found: list[tuple[int, int | None]] = []
-    for piece in words.split(","):
-        match = re.fullmatch(r"\s*(\d+)\s*(?:-\s*(\d+)\s*)?", piece, re.ASCII)
-        if not match:
-            what = f"{piece!r} is not a span of frames such as 20-39, nor a single frame"
-            raise ValueError(f"--frames {words}: {what}")
-        first, last = int(match[1]), int(match[2] or match[1])
-        if first > last:
-            raise ValueError(f"--frames {words}: {first} comes after {last}")
-        found.append((first, last + 1))
-    return found

@@ -4,7 +4,6 @@ turn with a rate in rad/s (positive turns to the left). The output has only the 
 adds the given frames before them."""
 
 import argparse
-from pathlib import Path
 
 from . import control_words, outputs
 
@@ -14,7 +13,7 @@ EXAMPLE = 'walk my_walk.bvh --control "3s 1.2; 4s 1.0 turn 0.6" --out more.bvh'
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of `walk`."""
-    parser.add_argument("file", type=Path, help="the walk to continue: .bvh, .npz, .npy or .pkl")
+    outputs.add_file(parser, "the walk to continue")
     parser.add_argument(
         "--control", required=True, metavar="SEGMENTS", help='for example "3s 1.2; 4s 1.0 turn 0.6"'
     )
@@ -27,7 +26,7 @@ def run(args: argparse.Namespace) -> None:
     """Continue the walk, and write the results."""
     segments = control_words.parse(args.control)
     paths = outputs.output_paths(args.out, args.overwrite, args.samples, args.file)
-    motion = outputs.read(args.file)
+    motion = outputs.read(args.file, args)
     from .. import joystick, load
 
     outputs.say("walking")

@@ -6,7 +6,10 @@ from jaxtyping import Float
 from .skeleton import BONE_LENGTHS, BONES, COURSE, TOES, Skeleton, joint_index
 
 HEAD = joint_index("Head")
-UNITS = {"millimetres": 1000.0, "centimetres": 100.0, "inches": 39.37, "feet": 3.281}
+# units by name, and how many make a metre
+SHORT = {"m": 1.0, "cm": 100.0, "mm": 1000.0, "inches": 39.37, "feet": 3.281}
+LONG = {"m": "metres", "cm": "centimetres", "mm": "millimetres"}
+UNITS = {LONG.get(name, name): many for name, many in SHORT.items() if many != 1}
 
 
 def bones_over_ours(positions: Float[np.ndarray, "T J 3"], skeleton: Skeleton = COURSE) -> float:
@@ -33,6 +36,15 @@ def unit_of(
     size = bones_over_ours(positions, skeleton)
     fits = (one for one in UNITS.items() if one[1] / 1.4 < size < 1.4 * one[1])
     return next(fits, ("", 1.0))
+
+
+def unit_name(metres: float) -> str:
+    """A unit of so many metres by its name, or by how many of it a metre has."""
+    many = 1 / metres
+    near = min(SHORT, key=lambda name: abs(np.log(many / SHORT[name])))
+    if abs(np.log(many / SHORT[near])) < np.log(1.4):
+        return near
+    return f"{many:.3g} to the metre"
 
 
 def unlike_a_body(positions: Float[np.ndarray, "T J 3"], skeleton: Skeleton = COURSE) -> str:

@@ -40,6 +40,8 @@ class Motion:
         audio     mono sound from -1 to 1; it begins with the first frame. It needs its
                   `sample_rate` in Hz
         source    where the motion comes from
+        about     how it was read: its axes, its unit, whether it stands on the floor
+        notes     what was mended in it, or is doubtful
     Raises MotionError, with frame and joint, for arrays that do not fit.  Notebook: 00
     """
 
@@ -51,6 +53,8 @@ class Motion:
     audio: Float[np.ndarray, "N"] | None = None
     sample_rate: int | None = None
     source: str = ""
+    about: str = ""
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self):
         try:
@@ -77,7 +81,16 @@ class Motion:
         """A clip in the world, its root starting at `start` (x, z, heading)."""
         place, heading = root_path(clip.control[:, :3], start, clip.fps)
         root = np.concatenate([place, heading[:, None]], axis=1)
-        return cls(clip.world(start), clip.fps, COURSE, root, clip.contacts, source=clip.source)
+        return cls(
+            clip.world(start),
+            clip.fps,
+            COURSE,
+            root,
+            clip.contacts,
+            source=clip.source,
+            about=clip.info.get("about", ""),
+            notes=tuple(clip.info.get("notes", ())),
+        )
 
     def to_clip(self) -> Clip:
         """Root-frame poses and control for training, from `root` or from the smoothed pelvis.

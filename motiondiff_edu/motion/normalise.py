@@ -10,16 +10,26 @@ from collections.abc import Mapping
 import numpy as np
 from jaxtyping import Float
 
+from .cleanup import runs
 from .directions import UP, has_our_bones, rotation_between, unit
+from .faults import WILD
 from .formats.bvh import Bvh
 from .formats.bvh.tokens import BvhError
 from .motion import MotionWarning
+from .questions import SWINGS, collapsed, speed
 from .skeleton import HEELS, JOINTS, TOES, joint_index
+from .upright import body_axis, ground_points, leg_of
 
 LEG = 0.835  # m, thigh plus shank of the course's figure
 SLOW = 0.35  # m/s, a toe slower than this is taken as standing
 STEEPEST = 0.06  # a larger slope of the floor is not a fault of the capture, and is kept
 POINTED = 0.3  # feet with a smaller share of their length across the body point along it
+BENT = 0.25  # of the width of the hips: so much both knees together stand out, where they bend
+LEAP = 0.25  # metres a frame: a cut between two takes
+BLEND = 0.12  # metres a frame, directly after a calibration pose
+MOST_CUT = 0.6  # of a motion: a longer part is no calibration
+# of units of the path and of the bones
+FACTORS = (1000.0, 100.0, 39.37, 10.0, 2.54, 1 / 2.54, 0.1, 1 / 39.37, 0.01, 0.001)
 FLIP_X = np.array([-1.0, 1.0, 1.0])  # positions seen in a mirror
 
 
@@ -31,12 +41,6 @@ def pick(
     for joint, name in mapping.items():
         points[:, joint_index(joint)] = world[:, bvh.names.index(name)]
     return points
-
-
-def leg_length(points: Float[np.ndarray, "T 21 3"]) -> float:
-    """Median thigh plus shank, both sides averaged, in the unit of `points`."""
-    thigh_shank = [np.linalg.norm(points[:, j] - points[:, j - 1], axis=-1) for j in (2, 3, 6, 7)]
-    return float(np.median(thigh_shank, axis=1).sum() / 2)
 
 
 def to_metres(
@@ -52,7 +56,7 @@ def to_metres(
     for size in (0.01, 1.0):
         if has_our_bones(size * points):
             return size * points, size
-    length = leg_length(points)
+    length = leg_of(points)
     if not length > 1e-9:
         raise BvhError(
             (
@@ -64,73 +68,106 @@ def to_metres(
     return points * (LEG / length), LEG / length
 
 
-def up_axis(
-    points: Float[np.ndarray, "T 21 3"], rest: Float[np.ndarray, "21 3"] | None = None
-) -> str:
-    """The axis along which the head is above the feet: "+y", "+z" and so on.
-
-    The motion decides if the figure is upright for most of the clip, else the rest pose does, if
-    there is one.
-    """
-    upright = np.median(body_axis(points), axis=0)
-    if np.abs(upright).max() < 0.8 and rest is not None:
-        upright = body_axis(rest[None])[0]
-    axis = int(np.abs(upright).argmax())
-    return "+-"[int(upright[axis] < 0)] + "xyz"[axis]
-
-
-def body_axis(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 3"]:
-    """Unit vector from the middle between the feet to the head."""
-    axis = points[:, joint_index("Head")] - points[:, list(HEELS)].mean(1)
-    return axis / np.linalg.norm(axis, axis=-1, keepdims=True)
-
-
-def rotate_y_up(points: Float[np.ndarray, "... 3"], up: str) -> Float[np.ndarray, "... 3"]:
-    """Rotate (never mirror) so that the axis `up` becomes +y."""
-    sign = -1.0 if up[0] == "-" else 1.0
-    first, second = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}[up[1]]
-    turned = points[..., [second, "xyz".index(up[1]), first]] * np.array([1.0, sign, sign])
-    return turned
-
-
 def unmirror(points: Float[np.ndarray, "T 21 3"]) -> tuple[Float[np.ndarray, "T 21 3"], bool]:
     """Reflect x when left and right are exchanged; also return whether that was so.
 
-    The cross product left x up must point where the toes do, seen along the body. Frames in which
-    the feet point straight down tell nothing.
+    The cross product left x up must point where the toes do, and where the knees bend. Frames in
+    which the feet point straight down, or the knees are straight, tell nothing.
     """
     left = points[:, joint_index("LeftUpLeg")] - points[:, joint_index("RightUpLeg")]
     up = body_axis(points)
+    ahead = np.cross(left, up)
     feet = (points[:, list(TOES)] - points[:, list(HEELS)]).sum(1)
-    flat = feet - np.einsum("ti,ti->t", feet, up)[:, None] * up
-    length = np.linalg.norm(flat, axis=-1)
-    seen = length > POINTED * np.linalg.norm(feet, axis=-1)  # false where the toes are unknown
-    ahead = np.cross(left, up)[seen]
-    cosine = np.einsum("ti,ti->t", ahead, flat[seen]) / (
-        np.linalg.norm(ahead, axis=-1) * length[seen]
-    )
-    if not seen.any() or not np.median(cosine) < -0.3:
+    ends = points[:, list(HEELS)] + points[:, [heel - 2 for heel in HEELS]]
+    knees = (points[:, [heel - 1 for heel in HEELS]] - ends / 2).sum(1)
+    toes = cosine(ahead, feet, up, POINTED * np.linalg.norm(feet, axis=-1))
+    bends = cosine(ahead, knees, up, BENT * np.linalg.norm(left, axis=-1))
+    told = [one[np.isfinite(one)] for one in (toes, bends)]
+    wrong = [bool(np.median(one) < -0.3) for one in told if len(one)]
+    if not wrong or not all(wrong):
         return points, False
     return points * FLIP_X, True
 
 
-def calibration_frames(points: Float[np.ndarray, "T 21 3"]) -> int:
-    """How many frames at the start are a calibration pose (a T-pose) and not motion.
+def cosine(
+    ahead: Float[np.ndarray, "T 3"],
+    other: Float[np.ndarray, "T 3"],
+    up: Float[np.ndarray, "T 3"],
+    least: Float[np.ndarray, "T"],
+) -> Float[np.ndarray, "T"]:
+    """The cosine between two directions seen along the body; NaN where the second is too short."""
+    flat = other - np.einsum("ti,ti->t", other, up)[:, None] * up
+    length = np.linalg.norm(flat, axis=-1)
+    sizes = np.linalg.norm(ahead, axis=-1) * length
+    found = np.einsum("ti,ti->t", ahead, flat) / np.maximum(sizes, 1e-12)
+    return np.where(length > least, found, np.nan)
 
-    Such a pose ends with a jump: a joint moves more than 20 cm and five times its usual step.
-    Jumps of more than 12 cm directly after it, a blend into the take, are counted too.
+
+def whole_take(points: Float[np.ndarray, "T 21 3"], fps: float) -> tuple[int, int, str]:
+    """The first frame of the motion, the frame after its last, and in words what lies outside.
+
+    That is a calibration pose (a T-pose) at the beginning and a figure that is lost at the end:
+    frames that a jump of more than 25 cm, and six times the usual step, cuts off, in which nothing
+    moves; and frames in which the joints have come together.
     """
-    leap = np.nanmax(np.linalg.norm(np.diff(points[:40], axis=0), axis=-1), axis=1)
-    usual = np.median(leap) if len(leap) > 3 else np.inf
-    if not leap[:1].max(initial=0) > max(0.2, 5 * usual):
-        return 0
-    wild = leap > max(0.12, 5 * usual)
-    return int(wild.argmin()) if not wild.all() else 1
+    lost = collapsed(points)
+    first, last = 0, len(points)
+    if lost.any() and not lost.all():
+        kept = max(runs(~lost), key=lambda run: run[1] - run[0])
+        first, last = int(kept[0]), int(kept[1])
+    part = points[first:last] - points[first:last, :1]
+    steps = np.nanmax(np.linalg.norm(np.diff(part, axis=0), axis=-1), axis=1, initial=0.0)
+    roots = np.linalg.norm(np.diff(points[first:last, 0], axis=0), axis=-1)
+    steps = np.maximum(steps, roots / 2)
+    usual = np.median(steps) if len(steps) > 3 else np.inf
+    cuts = np.flatnonzero(steps > max(LEAP, 6 * usual, 0.8 * WILD / fps))
+    begin, end = 0, len(part)
+    for cut in cuts:
+        if cut + 1 < MOST_CUT * len(part) and still(part[: cut + 1]):
+            begin = max(begin, int(cut) + 1)
+        elif len(part) - cut - 1 < MOST_CUT * len(part) and still(part[cut + 1 :]):
+            end = min(end, int(cut) + 1)
+    while 0 < begin < len(steps) and steps[begin] > max(BLEND, 5 * usual):
+        begin += 1  # a blend into the take
+    words = []
+    if first + begin:
+        words.append(f"{frames(0, first + begin)} a calibration pose, not part of the motion")
+    if first + end < len(points):
+        words.append(f"{frames(first + end, len(points))} a lost figure, not part of the motion")
+    return first + begin, first + end, "; ".join(words)
 
 
-def speed(points: Float[np.ndarray, "T ... 3"], fps: float) -> Float[np.ndarray, "T ..."]:
-    """|p(t+1) - p(t-1)| fps / 2, one-sided at the ends."""
-    return np.linalg.norm(np.gradient(points, 1 / fps, axis=0), axis=-1)
+def still(part: Float[np.ndarray, "T 21 3"]) -> bool:
+    """Whether nothing moves, or there is hardly time for it."""
+    return len(part) < 3 or bool(np.nanmax(np.ptp(part, axis=0)) < 0.06)
+
+
+def frames(first: int, end: int) -> str:
+    """Frames by number, with their verb."""
+    if end - first == 1:
+        return f"frame {first} is"
+    return f"frames {first} to {end - 1} are"
+
+
+def unit_of_path(points: Float[np.ndarray, "T 21 3"], fps: float) -> float:
+    """By how much the path must be multiplied, so that feet stand; 1 where they do, or none helps.
+
+    In some files the hips travel in another unit than that of the bones.
+    """
+    against = ground_points(points - points[:, :1])
+    if np.isnan(against).any():
+        return 1.0
+    swing = speed(against, fps).max(1) > SWINGS
+    if swing.mean() < 0.2 or np.ptp(points[:, 0], axis=0).max() < 1e-6:
+        return 1.0
+
+    def slides(factor: float) -> float:
+        moved = points + (factor - 1) * (points[:, :1] - points[:1, :1])
+        return float(np.median(speed(ground_points(moved), fps).min(1)[swing]))
+
+    now = slides(1.0)
+    best = min(FACTORS, key=slides)
+    return best if now > 0.4 and slides(best) < 0.5 * now else 1.0
 
 
 def floor_plane(toes: Float[np.ndarray, "T 2 3"], fps: float) -> Float[np.ndarray, "3"]:

@@ -8,7 +8,7 @@ from .cleanup import between_anchors, runs
 from .dance_frame import GROUND
 from .directions import unit
 from .inverse_kinematics import pelvis_ahead, perpendicular, triangle
-from .normalise import speed
+from .questions import speed
 from .skeleton import BONE_LENGTHS, HEELS, TOES
 
 THIGH, SHANK = float(BONE_LENGTHS[1]), float(BONE_LENGTHS[2])

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Bool, Float
 
+from .check import unit_name
 from .clip import Clip
 from .directions import (
     UPLEGS,
@@ -28,21 +29,21 @@ from .formats.bvh.frames import REPLACE_FPS
 from .formats.dialects import TIPS, check_mapping, guess_mapping
 from .normalise import (
     FLIP_X,
-    calibration_frames,
     floor_plane,
     level,
     pick,
-    rotate_y_up,
-    speed,
     to_metres,
+    unit_of_path,
     unmirror,
-    up_axis,
     warn,
+    whole_take,
 )
 from .planting import find_contacts, flat_feet, plant
+from .questions import answers, on_the_floor, speed
 from .resample import resample_present
 from .root_frame import FPS, estimate_root, to_root_frame
-from .skeleton import HEELS, HIPS, JOINTS, PARENTS, TOES
+from .skeleton import HIPS, JOINTS, PARENTS, TOES
+from .upright import ground_points, lowest, rotate_y_up, stands_upright, which_way_up
 
 SHORTEST = 0.5  # s; a shorter clip shows no gait and no heading
 NO_TIP = 0.001  # metres
@@ -54,33 +55,38 @@ SUNK = -0.05  # metres: no joint of a standing figure is so low
 class Figure:
     """The course's joints in a file's unit and axes; NaN for joints that the file lacks.
 
-    `rest`: the same joints as the file's skeleton stands, if it says so. `up`: the axis that points
-    up, such as "+z", if the file states it; else it is found from the figure. `right_rate`: what to
-    do about a wrong frame rate, for messages.
+    `rest`: the same joints as the file's skeleton stands, if it says so. `stated`: the axis that
+    points up by the file's format; `up`: the one that the user names. `right_rate`: what to do
+    about a wrong frame rate, for messages.
     """
 
     points: Float[np.ndarray, "T 21 3"]
     fps: float
     rest: Float[np.ndarray, "21 3"] | None = None
     source: str = ""
+    stated: str = ""
     up: str = ""
     right_rate: str = REPLACE_FPS
 
 
 def load_clip(
-    path: str | Path, mapping: Mapping[str, str] | None = None, file_fps: float | int | None = None
+    path: str | Path,
+    mapping: Mapping[str, str] | None = None,
+    file_fps: float | int | None = None,
+    up: str = "",
 ) -> Clip:
     """Read a BVH file and retarget it.
 
     `mapping` {course joint: joint of the file} names joints that are not guessed from their names.
-    `file_fps` replaces the file's frame time.
+    `file_fps` replaces the file's frame time. `up` is the axis that points up, such as "+z"; by
+    default it is found.
 
     Raises BvhError. Issues a MotionWarning for each correction.
     """
-    return retarget(read_bvh(path, file_fps), mapping)
+    return retarget(read_bvh(path, file_fps), mapping, up)
 
 
-def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None) -> Clip:
+def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None, up: str = "") -> Clip:
     """A motion with the course's 21 joints and bones, 20 frames/s, in metres, with floor 0.
 
     The bones keep the directions of the file, and planted toes stay still. `clip.info` records the
@@ -90,7 +96,7 @@ def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None) -> Clip:
     mapping = guess_mapping(bvh) if mapping is None else check_mapping(mapping, bvh)
     points, rest = bvh.world_positions(), bvh.rest_positions()[None]
     figure = Figure(
-        pick(points, bvh, mapping), bvh.fps, pick(rest, bvh, mapping)[0], source=bvh.source
+        pick(points, bvh, mapping), bvh.fps, pick(rest, bvh, mapping)[0], bvh.source, up=up
     )
     return retarget_figure(figure, {"mapping": dict(mapping)})
 
@@ -113,38 +119,52 @@ def normalise_figure(figure: Figure) -> tuple[Float[np.ndarray, "T 21 3"], dict]
     """The figure in metres, y up, 20 frames/s, on a level floor; and a record of corrections."""
     points, rest = figure.points, figure.rest
     notes: list[str] = []
-    up = figure.up or up_axis(points, rest)
-    points, unit = to_metres(rotate_y_up(points, up), figure.source)
+    up = which_way_up(points, figure.fps, rest, figure.stated, figure.up)
+    if up.doubt:
+        warn(up.doubt, figure.source, notes)
+    points, unit = to_metres(rotate_y_up(points, up.axis), figure.source)
     points = without_null_tips(points)
     points, mirrored = unmirror(points)
     lean = 0.0
     if rest is not None:
-        rest = rotate_y_up(rest, up)
+        rest = rotate_y_up(rest, up.axis)
         # a mirrored rest pose would have hips that face backwards
         lean = rest_lean(rest * FLIP_X if mirrored else rest)
     if mirrored:
         exchanged = "left and right were exchanged in the file; the figure was mirrored"
         warn(exchanged, figure.source, notes)
-    dropped = calibration_frames(points)
-    if dropped:
-        which = "frame 0 is" if dropped == 1 else f"frames 0 to {dropped - 1} are"
-        what = f"{which} a calibration pose, not part of the motion; dropped"
-        warn(what, figure.source, notes)
-    points = complete(points[dropped:])
+    first, last, outside = whole_take(points, figure.fps)
+    if outside:
+        warn(f"{outside}; dropped", figure.source, notes)
+    points = complete(points[first:last])
     refuse_short(len(points), figure)
+    factor = unit_of_path(points, figure.fps)
+    if factor != 1:
+        words = f"two units: the path was multiplied by {factor:.3g} to fit the bones"
+        warn(words, figure.source, notes)
+        points = points + (factor - 1) * points[:, :1]
+    for words in answers(points, figure.fps):
+        warn(words, figure.source, notes)
     speeds = speed(points, figure.fps)
-    warn_wild(speeds, figure, dropped, notes)
+    warn_wild(speeds, figure, first, notes)
+    stands = on_the_floor(points, figure.fps)
     points = resample_present(points, figure.fps, FPS)
     wild = wild_joints(speeds, figure.fps, len(points), FPS)
     ours = has_our_bones(points)
-    plane = np.zeros(3) if ours else floor_plane(ground_points(points), FPS)
+    if ours:
+        plane = np.zeros(3)
+    elif stands_upright(points):
+        plane = floor_plane(ground_points(points), FPS)
+    else:  # who lies or stands on the hands does not stand on the feet
+        plane = np.array([np.percentile(lowest(points), 2), 0.0, 0.0])
     info = dict(
         file_fps=figure.fps,
         unit_m=unit,
-        up=up,
-        dropped_frames=dropped,
+        up=up.axis,
+        dropped_frames=first,
         floor_slope=tuple(plane[1:]),
         notes=notes,
+        about=f"{up.words}; {unit_name(unit)}; feet on the floor in {stands:.0%} of frames",
     )
     return level(points, plane), info | {"rest_lean": lean, "wild": wild}
 
@@ -162,12 +182,6 @@ def without_null_tips(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, 
     return points
 
 
-def ground_points(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 2 3"]:
-    """Toes, or ankles where a file has no toes."""
-    toes = points[:, list(TOES)]
-    return points[:, list(HEELS)] if np.isnan(toes).any() else toes
-
-
 def onto_our_bones(
     points: Float[np.ndarray, "T 21 3"], lean: float, fps: float
 ) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 2"]]:
@@ -180,6 +194,9 @@ def onto_our_bones(
         return positions_from(points[:, HIPS], plain_directions(points)), contacts
     raw = positions_from(points[:, HIPS], bone_directions(points, flat_feet(points, fps), lean))
     raw += (points[:, UPLEGS].mean(1) - raw[:, UPLEGS].mean(1))[:, None]
+    if not stands_upright(points):
+        raw[..., 1] -= np.percentile(lowest(raw), 2)
+        return raw, np.zeros_like(contacts)
     standing = raw[:, list(TOES), 1][contacts]
     raw[..., 1] -= np.median(standing) if len(standing) else np.percentile(raw[:, list(TOES), 1], 2)
     return plant(raw, contacts, fps), contacts

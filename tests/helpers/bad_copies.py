@@ -198,6 +198,9 @@ FAKES: dict[str, Callable[[Path], None]] = {
     "writes_to_its_parent": first(TO_PARENT),
 }  # fmt: skip
 KINDS = FILES | ENDINGS | FAKES
+# these run into a limit; a measurement has them (`tools.results --only collect`), the tests do not
+WAITING = ("stops_its_parent", "stops_itself", "deaf", "threads", "memory")
+QUICK = tuple(kind for kind in KINDS if kind not in WAITING)
 # students' folders, where the name is bad as well
 NAMES = {
     "formula": "=1+1",
@@ -229,8 +232,10 @@ def results(rows: list[dict]) -> dict[str, tuple[str, str]]:
     return {row["student"]: (row["result"], row["message"]) for row in mine}
 
 
-def share_of_survivors(rows: list[dict], shown: Callable[[str], str]) -> float:
+def share_of_survivors(
+    rows: list[dict], shown: Callable[[str], str], kinds: Iterable[str] = tuple(KINDS)
+) -> float:
     """The share of kinds after which the right copy is right; `shown` turns a folder into a row."""
     found = results(rows)
-    kept = [found.get(shown(student(kind) + BESIDE), ("",))[0] == "right" for kind in KINDS]
+    kept = [found.get(shown(student(kind) + BESIDE), ("",))[0] == "right" for kind in kinds]
     return sum(kept) / len(kept)

@@ -133,7 +133,12 @@ def test_root_position_replaces_its_offset(tmp_path):
         (0.03333, 30),
         (0.008342, 120000 / 1001),
         (0.0417083750417, 24000 / 1001),
-        (0.042, 1 / 0.042),
+        (0.042, 24),
+        (0.0333, 30),
+        (0.033, 30),
+        (0.0083, 120),
+        (0.0334, 1 / 0.0334),
+        (0.043, 1 / 0.043),
     ],
 )
 def test_rounded_frame_times_are_understood(seconds, fps):

@@ -285,21 +285,29 @@ def test_what_was_written_here_can_be_read_and_written_again(tmp_path):
 @pytest.mark.parametrize(
     "turn, told",
     [
-        (lambda x: np.stack([x[..., 0], -x[..., 2], x[..., 1]], -1), "lies along z, .*0, 2, 1"),
-        (lambda x: np.stack([x[..., 0], x[..., 2], -x[..., 1]], -1), "lies along z, .*0, 2, 1"),
-        (lambda x: np.stack([x[..., 1], -x[..., 0], x[..., 2]], -1), "lies along x, .*1, 0, 2"),
-        (lambda x: np.stack([-x[..., 1], x[..., 0], x[..., 2]], -1), "lies along x, .*1, 0, 2"),
-        (lambda x: x * [1, -1, -1], "stands on its head: y points up"),
+        (lambda x: np.stack([x[..., 0], -x[..., 2], x[..., 1]], -1), "z up"),
+        (lambda x: np.stack([x[..., 0], x[..., 2], -x[..., 1]], -1), "-z up"),
+        (lambda x: np.stack([x[..., 1], -x[..., 0], x[..., 2]], -1), "x up"),
+        (lambda x: np.stack([-x[..., 1], x[..., 0], x[..., 2]], -1), "-x up"),
+        (lambda x: x * [1, -1, -1], "-y up"),
     ],
 )
-def test_another_axis_that_points_up_is_told(tmp_path, turn, told):
+def test_another_axis_that_points_up_is_told_and_turned(tmp_path, turn, told):
     positions = walking().positions
     np.savez(tmp_path / "up.npz", positions=turn(positions), fps=20.0)
-    with pytest.warns(MotionWarning, match=told) as caught:
-        read_motion(tmp_path / "up.npz")
-    advice = str(caught[0].message).partition("try positions")[2]
-    # it turns the figure upright, and does not mirror it
-    np.testing.assert_allclose(eval(f"x{advice}", {"x": turn(positions)}), positions)
+    with pytest.warns(MotionWarning, match=f"up.npz: {told}: .*the feet.*; the figure was turned"):
+        made = read_motion(tmp_path / "up.npz")
+    assert made.about.startswith(told) and any("turned" in note for note in made.notes)
+    # it is upright, not mirrored, and walks as it did, wherever it heads
+    np.testing.assert_allclose(made.positions[..., 1], positions[..., 1], atol=1e-9)
+    apart = [
+        np.linalg.norm(x[:, :, None] - x[:, None], axis=-1) for x in (positions, made.positions)
+    ]
+    np.testing.assert_allclose(*apart, atol=1e-9)
+    left, up, ahead = (
+        made.positions[:, a] - made.positions[:, b] for a, b in ((1, 5), (11, 0), (4, 3))
+    )
+    assert np.median(np.einsum("ti,ti->t", np.cross(left, up), ahead)) > 0
 
 
 def test_an_unknown_ending_says_which_there_are(tmp_path):

@@ -4,19 +4,21 @@ import numpy as np
 import pytest
 from synthetic_walk import walk
 
+from data_synth.walking import walk as walked
 from motiondiff_edu.motion.cleanup import runs
 from motiondiff_edu.motion.directions import rest_lean
 from motiondiff_edu.motion.normalise import (
     MotionWarning,
-    calibration_frames,
     floor_plane,
     level,
-    rotate_y_up,
+    unit_of_path,
     unmirror,
+    whole_take,
 )
 from motiondiff_edu.motion.planting import find_contacts, plant, shift_to_pins, solve_leg
 from motiondiff_edu.motion.retarget import warn_sunk
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, HEELS, OFFSETS, PARENTS, TOES, joint_index
+from motiondiff_edu.motion.upright import rotate_y_up
 
 
 def test_turning_up_keeps_handedness():
@@ -61,14 +63,31 @@ def test_a_tilted_floor_is_found_and_levelled():
     )  # turned, not sheared
 
 
-def test_calibration_frames_are_counted():
-    rng = np.random.default_rng(0)
-    points = np.cumsum(rng.normal(scale=0.01, size=(50, 21, 3)), axis=0)
-    assert calibration_frames(points) == 0
-    points[0] += 1.0
-    assert calibration_frames(points) == 1
-    points[1] += 0.5
-    assert calibration_frames(points) == 2
+def test_a_calibration_pose_and_a_lost_figure_are_no_part_of_a_motion():
+    world, _ = walk(frames=60)
+    pose = np.repeat(world[:1] + [0.4, 0.0, 0.3], 45, 0)
+    pose[:, [15, 16, 19, 20], 1] += 0.7  # both arms up
+    assert whole_take(world, 20.0) == (0, 60, "")
+    for frames, said in ((1, "frame 0 is"), (2, "frames 0 to 1 are"), (45, "frames 0 to 44 are")):
+        first, last, words = whole_take(np.concatenate([pose[:frames], world]), 20.0)
+        assert (first, last) == (frames, frames + 60) and words.startswith(f"{said} a calibration")
+    heap = np.repeat(world[-1:, :1] * [1, 0, 1], 21, 1)
+    for frames in (1, 5):
+        lost = np.concatenate([world, np.repeat(heap, frames, 0)])
+        first, last, words = whole_take(lost, 20.0)
+        assert (first, last) == (0, 60) and "a lost figure" in words
+    # a figure that stands still and then walks has no calibration pose
+    stands = np.concatenate([np.repeat(world[:1], 40, 0), world])
+    assert whole_take(stands, 20.0) == (0, 100, "")
+
+
+def test_a_path_in_another_unit_is_told_by_the_feet():
+    world = walked(np.tile([1.1, 0.0, 0.2], (100, 1)), seed=3).world()
+    assert unit_of_path(world, 20.0) == 1
+    for factor in (100.0, 0.01, 39.37):
+        moved = world + (factor - 1) * world[:, :1]
+        assert unit_of_path(moved, 20.0) == pytest.approx(1 / factor, rel=0.01)
+    assert unit_of_path(world - world[:, :1], 20.0) == 1  # no path, and none in another unit
 
 
 def test_contacts_and_pins():

@@ -25,6 +25,7 @@ CALLED = {  # part: where its function is, and its name
     "recordings-inbetweens": (command.recorded_inbetweens, "inbetween_records"),
     "real-music": (command.real_music, "music_records"),
     "course-shown": (command, "shown_records"),
+    "gate": (command.gate, "gate_records"),
     "eye": (command.eyes, "eye_records"),
     "eye-recordings": (command.eyes, "recorded_records"),
 }

@@ -19,7 +19,7 @@ from . import cells, font, index
 STYLE = Path(__file__).with_name("style.css")
 DOCS = (
     "RESULTS", "RESULTS_ALL", "EQUATIONS", "NOTATION", "GLOSSARY", "QUESTIONS", "CAPSTONE",
-    "TEACHING", "PILOT", "USING", "EXTENDING", "INSTALL", "BLENDER",
+    "TEACHING", "PILOT", "USING", "FROM_OTHERS", "EXTENDING", "INSTALL", "BLENDER",
 )  # fmt: skip
 
 PAGE = """<!doctype html>

@@ -92,6 +92,13 @@ def read_keypoints(path: str | Path) -> Keypoints:
     return Keypoints(positions - [0.0, floor, 0.0], floor, path.name)
 
 
+def full_pose(path: Path) -> np.ndarray | None:
+    """The positions (T, 24, 3) of SMPL's joints in a pickle of EDGE, or None for another file."""
+    content = _load(path)
+    found = content.get("full_pose") if isinstance(content, dict) else None
+    return found.made() if isinstance(found, _Array) else None
+
+
 def _short(value: object) -> str:
     """A value of a file in a message: a text, or else its type, for it may be endless to print."""
     return repr(value[:20]) if isinstance(value, str) else type(value).__name__

@@ -21,12 +21,12 @@ from .bvh.tokens import BvhError
 # name (LeftKnee, Knee_L). One word can mean two joints: LeftHip is a thigh or a corner of the
 # pelvis, LeftFoot an ankle or a toe. So the order matters.
 SIDED = {
-    "UpLeg": "upleg upperleg thigh thighbend femur hip",
-    "Leg": "leg lowleg lowerleg shin knee calf tibia",
+    "UpLeg": "upleg upperleg upperleg01 thigh thighbend femur hip",
+    "Leg": "leg lowleg lowerleg lowerleg01 shin knee calf tibia",
     "Foot": "ankle foot",
     "ToeBase": "toebase toe toes toe0 ball bigtoe footindex foot",
-    "Arm": "arm shldr shldrbend uparm uarm upperarm humerus shoulder",
-    "ForeArm": "forearm forearmbend lowarm lowerarm farm radius elbow",
+    "Arm": "arm shldr shldrbend uparm uarm upperarm upperarm01 humerus shoulder",
+    "ForeArm": "forearm forearmbend lowarm lowerarm lowerarm01 farm radius elbow",
     "Hand": "wrist hand",
     "HandIndex1": (
         "handindex1 handmiddle1 mid1 middle1 middleproximal index1 fingers finger1 "
@@ -203,6 +203,12 @@ def refuse_incomplete(mapping: Mapping[str, str], bvh: Bvh) -> None:
     """
     lacking = [joint for joint in NEEDED if joint not in mapping]
     if lacking:
+        if figures := figures_of(bvh):
+            raise BvhError(
+                f"the file has {len(figures)} figures: their joints begin with "
+                f"{' and '.join(figures)}. Export each figure to its own file.",
+                bvh.source,
+            )
         first = f"no joint found for {', '.join(lacking)}"
         if twice := [name for name in lacking if name in mapping.values()]:
             ours = next(ours for ours, own in mapping.items() if own == twice[0])
@@ -213,6 +219,18 @@ def refuse_incomplete(mapping: Mapping[str, str], bvh: Bvh) -> None:
             "...}), or motiondiff-edu convert with --joints.",
             bvh.source,
         )
+
+
+def figures_of(bvh: Bvh) -> list[str]:
+    """The beginnings by which the joints of several figures in a file are told apart, if any."""
+    rests: dict[str, set[str]] = {}
+    for name in bvh.joints:
+        start, mark, rest = name.partition(next((x for x in ENDS_A_WORD if x in name), "_"))
+        if mark and rest:
+            rests.setdefault(start + mark, set()).add(rest)
+    alike = [start for start, own in rests.items() if len(own) >= len(NEEDED)]
+    same = [start for start in alike if rests[start] == rests[alike[0]]]
+    return same if len(same) > 1 else []
 
 
 Bones = Sequence[tuple[str, str]]  # of joints of the course

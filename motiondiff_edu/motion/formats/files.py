@@ -3,11 +3,10 @@
 Notebook: 00
 """
 
+import re
 import warnings
 import zipfile
 from collections.abc import Mapping
-from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,20 +15,42 @@ import numpy as np
 from ..._files import replacing
 from .. import registry
 from ..arguments import check_there
-from ..check import lies_down, unit_of, unlike_a_body
+from ..check import SHORT, lies_down, unlike_a_body
 from ..clip import Clip
 from ..motion import Motion, MotionError, MotionWarning, checked_path
 from ..recordings import recordings
 from ..retarget import load_clip
 from ..root_frame import FPS
 from ..skeleton import COURSE, JOINTS, Skeleton
-from .aist import COCO, read_keypoints
+from ..upright import AXES
+from .aist import COCO, full_pose, read_keypoints
 from .bvh.write import write_bvh
+from .humanml3d import motion_of_smpl
+from .joints import mended_joints
 from .keypoints import motion_of_keypoints
 
 FORMAT = "motiondiff_edu motion 1"
 LONGEST_SOURCE = 200  # letters
 SLOWEST = 1.0  # frames a second: a smaller number is the time of a frame
+# names of arrays in the files of other programs
+OTHERS_SAY = {
+    "posed_joints": "positions",
+    "joints": "positions",
+    "mocap_framerate": "fps",
+    "mocap_frame_rate": "fps",
+}
+ANGLES = (
+    "has joint angles (poses, trans), as AMASS has them, and no positions: those need the body "
+    "model that the angles are for. With the package smplx and its model: joints = "
+    "model(...).joints; numpy.savez('walk.npz', positions=joints[:, :22], fps=mocap_framerate)"
+)
+TAKES = {  # which option is for which files
+    "mapping": (".bvh",),
+    "file_fps": (".bvh",),
+    "up": (".bvh", ".npz", ".npy", ".pkl"),
+    "unit": (".npz", ".npy"),
+}
+EDGE_FPS = 30.0
 LARGEST = 2_000_000_000  # bytes, unpacked: half a day of motion
 # endings of other files, and what to do with them
 ELSEWHERE = {
@@ -45,6 +66,8 @@ def read_motion(
     *,
     mapping: Mapping[str, str] | None = None,
     file_fps: float | int | None = None,
+    up: str = "",
+    unit: str = "",
 ) -> Motion:
     """Read a motion from a file; the name's ending says whether it is BVH, npz, npy or pkl.
 
@@ -55,11 +78,16 @@ def read_motion(
 
     mapping   for a BVH file: {joint of the course: joint of the file}, for names not recognised
     file_fps  for a BVH file: its frames a second, if the file states a wrong number
+    up        the axis that points up in the file, such as "z" or "-y"; else it is found
+    unit      for npz and npy: "m", "cm", "mm", "inches" or "feet"; else it is found
+    `about` of the motion says how it was read, `notes` what was mended or is doubtful.
     Raises FileNotFoundError for a missing file. Raises MotionError, BvhError or AistError
     (all are ValueErrors) for a faulty one, with the file, the fault and what to do, and TypeError
     for what is no path.  Notebook: 00
     """
     path = checked_path(path)
+    if re.match(r"\w+:/", str(path)):
+        raise MotionError(f"{path} is an address: download the file first, then give its name")
     check_there(path)
     ending = path.suffix.lower()
     read = registry.readers.get(ending)
@@ -70,13 +98,25 @@ def read_motion(
             f"{path.name} cannot be read as a motion; {', '.join(others)} and {last} can"
             f"{f'. {advice[0].upper()}{advice[1:]}' if advice else ''}"
         )
-    if mapping is not None or file_fps is not None:
-        if ending != ".bvh":
-            raise MotionError(f"{path.name} is no BVH file; `mapping` and `file_fps` are for BVH")
-        read = partial(read, mapping=mapping, file_fps=file_fps)
-    motion = read(path)
+    given = {"mapping": mapping, "file_fps": file_fps, "up": checked_up(up), "unit": unit}
+    options = {name: value for name, value in given.items() if value not in (None, "")}
+    for name in options:
+        if ending not in TAKES[name]:
+            those = " and ".join(TAKES[name])
+            raise MotionError(f"{path.name}: `{name}` is for {those}, not for {ending}")
+    if unit and unit not in SHORT:
+        raise MotionError(f"no unit is called {unit!r:.40}; there are {', '.join(SHORT)}")
+    motion = read(path, **options)
     recordings.note_read(path)
     return motion
+
+
+def checked_up(up: str) -> str:
+    """An axis with its sign, "+z" for "z"; "" for none.  Raises MotionError for another word."""
+    signed = up if not up or up[0] in "+-" else f"+{up}"
+    if signed and signed not in AXES:
+        raise MotionError(f"up is an axis such as 'z' or '-y', not {up!r:.40}")
+    return signed
 
 
 def read_motions(folder: str | Path) -> list[Motion]:
@@ -112,18 +152,29 @@ def read_motions(folder: str | Path) -> list[Motion]:
 
 @registry.readers.register(".bvh")
 def read_bvh_motion(
-    path: Path, mapping: Mapping[str, str] | None = None, file_fps: float | int | None = None
+    path: Path,
+    mapping: Mapping[str, str] | None = None,
+    file_fps: float | int | None = None,
+    up: str = "",
 ) -> Motion:
     """Any humanoid BVH, retargeted; the figure keeps its place in the world.  Raises BvhError."""
-    clip = load_clip(path, mapping, file_fps)
+    clip = load_clip(path, mapping, file_fps, up)
     return Motion.of_clip(clip, clip.info["start"])
 
 
 @registry.readers.register(".pkl")
-def read_aist(path: Path) -> Motion:
-    """A dance of AIST++, retargeted.  Raises AistError for another pickle; none is run."""
+def read_aist(path: Path, up: str = "") -> Motion:
+    """A dance of AIST++, retargeted, or joints of SMPL as EDGE writes them.
+
+    Raises AistError for another pickle; none is run.
+    """
+    joints = full_pose(path)
+    if joints is not None:
+        made = motion_of_smpl(joints, EDGE_FPS, path.name, path.stem, up)
+        if made is not None:
+            return made
     dance = read_keypoints(path)
-    return motion_of_keypoints(dance.positions, COCO, dance.fps, dance.source, up="+y")
+    return motion_of_keypoints(dance.positions, COCO, dance.fps, dance.source, "+y", up)
 
 
 @registry.writers.register(".bvh")
@@ -160,7 +211,7 @@ def write_npz(motion: Motion, path: Path) -> None:
 
 
 @registry.readers.register(".npz")
-def read_npz(path: Path) -> Motion:
+def read_npz(path: Path, up: str = "", unit: str = "") -> Motion:
     """Read our own npz, or one of data_synth: walks have poses and control, dances have positions.
 
     Raises MotionError for another npz, with a list of its arrays. Pickled objects are not opened.
@@ -169,19 +220,25 @@ def read_npz(path: Path) -> Motion:
     told = arrays.get("source", np.array(path.stem))
     source = str(told)[:LONGEST_SOURCE] if told.ndim == 0 else path.stem
     try:
+        angles = {"poses", "trans"} <= arrays.keys()
+        for theirs, ours in OTHERS_SAY.items():
+            if theirs in arrays and ours not in arrays:
+                arrays[ours] = arrays[theirs]
         if {"positions", "poses"} & arrays.keys() and "fps" not in arrays:
             _note(path, f"the file has no `fps`; {FPS:g} frames/s are assumed")
         if "positions" in arrays:
-            motion = _from_positions(arrays, source or path.stem)
-            unit, many = unit_of(motion.positions, motion.skeleton)
-            if unit and not {"format", "root"} & arrays.keys():
-                motion = replace(motion, positions=motion.positions / many)
-                _note(path, f"the positions are in {unit}; they are read in metres")
-            figure = motion.positions, motion.skeleton
-            words = unlike_a_body(*figure) or lies_down(*figure)
-            if words:
-                _note(path, words)
-            return motion
+            if arrays["positions"].shape[1:2] != (len(JOINTS),) and "names" not in arrays:
+                points = arrays["positions"]
+                smpl = motion_of_smpl(points, _rate(arrays), path.name, path.stem, up, unit)
+                if smpl is not None:
+                    return smpl
+            motion = _from_positions(arrays, source or path.stem, up)
+            if {"format", "root"} & arrays.keys() and not (up or unit):  # written by us
+                figure = motion.positions, motion.skeleton
+                if words := unlike_a_body(*figure) or lies_down(*figure):
+                    _note(path, words)
+                return motion
+            return motion if motion.about else mended_joints(motion, path.name, up, unit)
         if {"poses", "control"} <= arrays.keys():
             fps = _rate(arrays)
             poses = arrays["poses"].astype(np.float64)
@@ -189,6 +246,8 @@ def read_npz(path: Path) -> Motion:
             return Motion.of_clip(Clip(poses, arrays["control"], fps, contacts, source))
     except (ValueError, TypeError, IndexError) as error:
         raise MotionError(f"{path.name}: {error}") from None
+    if angles:
+        raise MotionError(f"{path.name} {ANGLES}")
     there = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
     raise MotionError(
         f"{path.name} contains {there or 'nothing'}; a motion has `positions` (frames, joints, 3) "
@@ -196,12 +255,13 @@ def read_npz(path: Path) -> Motion:
     )
 
 
-def _from_positions(arrays: dict[str, np.ndarray], source: str) -> Motion:
+def _from_positions(arrays: dict[str, np.ndarray], source: str, up: str) -> Motion:
     skeleton = COURSE
     fps = _rate(arrays)
     names = _names(arrays)
     if _is_named(arrays):
-        return motion_of_keypoints(arrays["positions"].astype(np.float64), names, fps, source)
+        points = arrays["positions"].astype(np.float64)
+        return motion_of_keypoints(points, names, fps, source, up=up)
     if "parents" in arrays:
         skeleton = Skeleton(names, tuple(arrays["parents"].tolist()))
     along: dict[str, Any] = {

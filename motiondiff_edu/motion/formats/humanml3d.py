@@ -15,7 +15,6 @@ The numbers of a frame, at 20 frames/s, in metres, y up:
 Source: HumanML3D (Guo and others, 2022).
 """
 
-import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,10 +23,10 @@ from jaxtyping import Float
 
 from .. import registry
 from ..arguments import check_there
-from ..check import unlike_a_body
-from ..motion import Motion, MotionError, MotionWarning
+from ..motion import Motion, MotionError
 from ..root_frame import FPS, forward_left
 from ..skeleton import BONE_LENGTHS, J, Skeleton, joint_index
+from .joints import mended_joints
 
 NUMBERS = 263
 # name and parent of each joint, in the order of SMPL
@@ -88,7 +87,21 @@ LEGS = ((1, 4), (2, 5), (4, 7), (5, 8))  # thighs and shanks
 LEG_BONE = (0.2, 0.7)  # metres, child to giant
 UNSTEADY = 0.3  # a bone that changes its length by this fraction is no bone
 MOVES = 0.01  # metres a frame: the root moves, so that its two velocities can be compared
-BATCH = "these are several motions; save each one by itself"
+BATCH = "these are several motions; save each one by itself: numpy.save('one.npy', x[0])"
+# a dictionary in a .npy, as motion diffusion models write it
+RESULTS = (
+    "it contains Python objects, which can run code. If you trust it, take a motion out of it: "
+    "numpy.save('one.npy', numpy.load({name!r}, allow_pickle=True).item()['motion'][0])"
+)
+# bodies whose first 22 joints are these: HumanML3D, SMPL, SMPL-H, SMPL-X without and with landmarks
+SMPL_JOINTS = {
+    22: "22 joints",
+    24: "SMPL",
+    52: "SMPL-H",
+    55: "SMPL-X",
+    127: "SMPL-X",
+    144: "SMPL-X",
+}
 # last axes of other arrays, and what they are
 OTHERS = {
     (251,): "251 numbers a frame are a motion of KIT-ML, which has 21 joints and 12.5 frames/s",
@@ -98,8 +111,6 @@ OTHERS = {
         "21 joints are those of KIT-ML or of the course. If they are the course's, in metres, save "
         "them with numpy.savez('walk.npz', positions=x, fps=20)"
     ),
-    (24, 3): "24 joints are SMPL's; the first 22 of them are HumanML3D's: save x[:, :22]",
-    (52, 3): "52 joints are SMPL-H's; the first 22 of them are HumanML3D's: save x[:, :22]",
     (66,): "66 numbers a frame may be 22 joints in one row: save x.reshape(-1, 22, 3)",
 }
 
@@ -297,7 +308,7 @@ def describe_array(array: np.ndarray) -> str:
         what = "263 numbers in one row are one frame, or statistics such as Mean.npy: no motion"
     elif array.ndim == 3 and shape[2] == NUMBERS:
         what = BATCH
-    elif array.ndim == 4 and (shape[1:3] in ((NUMBERS, 1), (22, 3)) or shape[2:] == (22, 3)):
+    elif array.ndim == 4 and (shape[1:3] == (NUMBERS, 1) or first_22(array[0]) is not None):
         what = BATCH
     else:
         fits = [words for axes, words in OTHERS.items() if shape[1:] == axes]
@@ -328,12 +339,9 @@ def load_array(path: str | Path) -> np.ndarray:
     except MotionError:
         raise
     except Exception as error:  # a damaged file may raise anything
-        objects = "object" in str(error).lower()
-        reason = (
-            "it contains Python objects, which can run code. Save plain arrays with numpy.save"
-            if objects
-            else "the file is damaged or cut off; copy it again"
-        )
+        reason = "the file is damaged or cut off; copy it again"
+        if "object" in str(error).lower():
+            reason = RESULTS.format(name=path.name)
         raise MotionError(f"{path.name} cannot be read as npy: {reason}") from None
 
 
@@ -343,26 +351,59 @@ def joints_in(path: Path) -> tuple[Float[np.ndarray, "T 22 3"], str]:
     Raises MotionError for another array.
     """
     array = load_array(path)
-    fits = array.ndim == 2 and array.shape[1] == NUMBERS
-    if not (fits or array.shape[1:] == (len(HUMANML), 3)) or not len(array):
-        raise MotionError(f"{path.name} {describe_array(array)}")
-    check_numbers(array, path.name)
-    if fits:
+    if array.ndim == 2 and array.shape[1] == NUMBERS and len(array):
+        check_numbers(array, path.name)
         return joints_of(array, path.name), f"HumanML3D, {NUMBERS} numbers a frame"
-    return array.astype(np.float64), "HumanML3D, 22 joints"
+    joints = first_22(array)
+    if joints is None:
+        raise MotionError(f"{path.name} {describe_array(array)}")
+    check_numbers(joints, path.name)
+    body = SMPL_JOINTS.get(array.shape[-2], "22 joints")
+    return joints.astype(np.float64), body if body != "22 joints" else "HumanML3D, 22 joints"
+
+
+def first_22(array: np.ndarray) -> np.ndarray | None:
+    """The joints (T, 22, 3) in an array of SMPL's joints, or None for another one.
+
+    Its axes are frames, joints, x y z, or joints, x y z, frames as motion diffusion models write
+    them; an axis of length 1 may stand before them.
+    """
+    if array.ndim == 4 and len(array) == 1:
+        array = array[0]
+    if array.ndim != 3:
+        return None
+    if array.shape[1] == 3 and array.shape[0] in SMPL_JOINTS and array.shape[2] > 3:
+        array = array.transpose(2, 0, 1)
+    if array.shape[1] not in SMPL_JOINTS or array.shape[2] != 3 or not len(array):
+        return None
+    return array[:, : len(HUMANML)]
+
+
+def motion_of_smpl(
+    array: np.ndarray, fps: float, name: str, source: str, up: str = "", unit: str = ""
+) -> Motion | None:
+    """A motion of SMPL's joints, however many there are; None for another array.
+
+    Raises MotionError for what is not finite, or no figure.
+    """
+    joints = first_22(array)
+    if joints is None:
+        return None
+    check_numbers(joints, name)
+    return mended_joints(
+        Motion(to_course(joints.astype(np.float64)), fps, source=source), name, up, unit
+    )
 
 
 @registry.readers.register(".npy")
-def read_humanml3d(path: str | Path) -> Motion:
+def read_humanml3d(path: str | Path, up: str = "", unit: str = "") -> Motion:
     """A file of HumanML3D's folder new_joint_vecs or new_joints as a Motion of 20 frames/s.
 
     The figure keeps the bone lengths of the file; `retarget.onto_our_bones` gives it the course's.
-    Raises MotionError for another file. Issues a MotionWarning for a figure of another size.
+    up, unit   as in `read_motion`
+    Raises MotionError for another file. Issues a MotionWarning for what is mended or doubtful.
     """
     path = Path(path)
     joints, what = joints_in(path)
     motion = Motion(to_course(joints), FPS, source=f"{path.stem} ({what})")
-    words = unlike_a_body(motion.positions, motion.skeleton)
-    if words:
-        warnings.warn(f"{path.name}: {words}", MotionWarning, stacklevel=3)
-    return motion
+    return mended_joints(motion, path.name, up, unit)

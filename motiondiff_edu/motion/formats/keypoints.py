@@ -27,13 +27,15 @@ def motion_of_keypoints(
     names: Sequence[str],
     fps: float,
     source: str = "",
+    stated: str = "",
     up: str = "",
 ) -> Motion:
     """The course's figure that moves as these joints do, in metres at 20 frames/s.
 
     points   world positions in any unit, with any axis up
     names    of the N joints, in any of the usual spellings
-    up       the axis that points up, such as "+z"; without it it is found from the figure
+    stated   the axis that points up by the format, such as "+z"
+    up       the one that the user names; without it, it is found (`motion/upright.py`)
     Raises MotionError for joints that are missing, make no figure or have gaps, and BvhError for
     less than half a second.
     """
@@ -50,7 +52,8 @@ def motion_of_keypoints(
     _refuse_points(figure, source)
     _refuse_no_figure(figure, sources, source)
     mapping = {joint: " + ".join(of) for joint, of in sources.items()}
-    found = Figure(figure, fps, source=source, up=up, right_rate="correct the `fps` of the file")
+    rate = "correct the `fps` of the file"
+    found = Figure(figure, fps, None, source, stated, up, rate)
     clip = retarget_figure(found, {"mapping": mapping})
     return Motion.of_clip(clip, clip.info["start"])
 

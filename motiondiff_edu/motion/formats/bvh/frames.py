@@ -11,6 +11,7 @@ from .tokens import FARTHEST, BvhError, to_count, to_number
 
 SLOWEST, FASTEST = 0.5, 0.001  # s per frame; a frame time outside this range is an error
 REPLACE_FPS = "pass file_fps= to md.read_motion, or --file-fps to motiondiff-edu convert"
+USUAL_RATES = (24.0, 25.0, 30.0, 50.0, 60.0, 100.0, 120.0, 240.0)
 EXACT_RATES = [float(n) for n in range(1, 1001)] + [n * 1000 / 1001 for n in (24, 30, 60, 120)]
 
 
@@ -90,7 +91,14 @@ def frame_time(text: str, line: int, path: str | Path, file_fps: float | None) -
 
 
 def rate(seconds: float) -> float:
-    """Frames per second behind a rounded frame time: .03333 is 30, .008342 is 120000/1001."""
+    """Frames per second behind a rounded frame time: .0333 is 30, .008342 is 120000/1001.
+
+    A usual rate is meant if its frame time is the number when rounded to as many decimals.
+    """
+    _, _, decimals = f"{seconds:.12f}".rstrip("0").partition(".")
+    for usual in USUAL_RATES:
+        if 3 <= len(decimals) < 12 and abs(1 / usual - seconds) <= 0.501 * 10.0 ** -len(decimals):
+            return usual
     nearest = min(EXACT_RATES, key=lambda exact: abs(exact * seconds - 1))
     return nearest if abs(nearest * seconds - 1) < 3e-4 else 1 / seconds
 

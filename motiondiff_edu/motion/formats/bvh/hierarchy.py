@@ -39,7 +39,7 @@ def read_nodes(statements: list[Statement], path: str | Path) -> list[Node]:
     """The nodes in file order; parents come before their children. Raises BvhError."""
     reader = Reader(path)
     actions = {"{": open_node, "}": close_node, "offset": offset, "channels": channels}
-    actions |= {"root": joint, "joint": joint, "end": end_site}
+    actions |= {"root": joint, "joint": joint, "end": end_site, "endsite": end_site}
     for statement in statements:
         if statement.word == "hierarchy" and not statement.rest and not reader.nodes:
             continue

@@ -1,7 +1,8 @@
 """Reading BVH motion capture: `read_bvh(path)` returns every frame of the file, as written.
 
 Rules for cases that the format leaves open (each has its test):
-    Position channels replace a joint's OFFSET, before or after the rotations.
+    Position channels replace a joint's OFFSET, before or after the rotations; but where those of a
+    joint below the root are 0 in every frame and its OFFSET is not, the OFFSET stays.
     The rotation order is the order of the channels: Zrotation Xrotation Yrotation is Rz Rx Ry.
     End sites can be missing.
     A joint with CHANNELS 0 keeps its offset.
@@ -86,8 +87,12 @@ class Bvh:
     def local_positions(self) -> Float[np.ndarray, "T N 3"]:
         """The position of each node in its parent's frame: its position channels, or its offset."""
         places = np.broadcast_to(self.offsets, (len(self.frames), *self.offsets.shape)).copy()
-        for node in range(len(self.names)):
-            for axis, column in self.columns(node, "position"):
+        for node, parent in enumerate(self.parents):
+            columns = self.columns(node, "position")
+            moved = self.frames[:, [column for _, column in columns]]
+            if parent >= 0 and not moved.any():
+                continue  # an exporter's placeholder: the joint would lie on its parent
+            for axis, column in columns:
                 places[:, node, "XYZ".index(axis)] = self.frames[:, column]
         return places
 

@@ -72,6 +72,7 @@ def read_lines(path: str | Path) -> list[str]:
         refuse_foreign(start, path)
         raw = start + file.read()
     refuse_too_many(raw, path)
+    raw = raw.rstrip(b"\x1a\r\n\t ") + b"\n"  # Ctrl-Z ends a text of old programs
     lines = decode(raw).replace("\r\n", "\n").replace("\r", "\n").split("\n")
     longest = max(range(len(lines)), key=lambda index: len(lines[index]))
     if len(lines[longest]) > LONGEST_LINE:
