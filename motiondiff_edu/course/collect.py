@@ -210,7 +210,9 @@ class Runner:
     """
 
     def __init__(self, notebook: Path, seconds: int, gigabytes: float) -> None:
-        self.notebook, self.seconds, self.gigabytes = notebook.resolve(), seconds, gigabytes
+        self.notebook = notebook.resolve()
+        self.seconds = seconds
+        self.gigabytes = gigabytes
         self.mark = secrets.token_hex(16)
         self.process: subprocess.Popen[bytes] | None = None
 
