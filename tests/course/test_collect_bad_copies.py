@@ -23,7 +23,7 @@ def collected(tmp_path_factory):
     """What it prints, and the rows of its file."""
     folder = tmp_path_factory.mktemp("handed_in")
     out = tmp_path_factory.mktemp("out") / "class.csv"
-    bad_copies.hand_in(folder, bad_copies.QUICK)
+    bad_copies.hand_in(folder, bad_copies.QUICK, bad_copies.WATCHED)
     limits = ["--seconds", str(bad_copies.SECONDS), "--gigabytes", "1"]
     done = subprocess.run(
         [sys.executable, "-m", "motiondiff_edu", "collect", folder, "--out", out, *limits],
@@ -39,7 +39,7 @@ def collected(tmp_path_factory):
 
 def test_every_right_copy_is_right_beside_the_bad_ones(collected):
     assert len(bad_copies.QUICK) >= 50
-    assert bad_copies.share_of_survivors(collected[1], shown, bad_copies.QUICK) == 1
+    assert bad_copies.share_of_survivors(collected[1], shown, bad_copies.WATCHED) == 1
 
 
 @pytest.mark.parametrize("kind", bad_copies.QUICK)
