@@ -1,9 +1,12 @@
-"""The exercises of a notebook, and the answers in a student's copy of it."""
+"""The exercises of a notebook, the answers in a student's copy of it, and what becomes of them."""
 
 import ast
 import contextlib
 import json
+import os
 import re
+import signal
+import stat
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +19,11 @@ FAILED = "failed"
 SLOW = "too slow"
 DIED = "died"
 UNREADABLE = "unreadable"
+RESULTS = (RIGHT, OPEN, WRONG, FAILED, SLOW, DIED, UNREADABLE)
+
+LARGEST = 64 * 2**20  # bytes of a notebook; a film in its outputs takes a few million
+LONGEST = 500  # characters of a message: a table shows its beginning
+CUT = " ..."  # at the end of a longer one
 
 
 class CopyError(ValueError):
@@ -31,9 +39,12 @@ class Answer:
 
 
 def cells(path: Path) -> list[dict]:
-    """The code cells of a notebook, each as {"source", "tags", "outputs"}. Raises CopyError."""
+    """The code cells of a notebook, each as {"source", "tags", "outputs"}. Raises CopyError.
+
+    Only regular files are read, and links to them; none is larger than LARGEST.
+    """
     try:
-        notebook = json.loads(path.read_text(encoding="utf-8"))
+        notebook = json.loads(_read(path))
         return [
             {
                 "source": "".join(cell["source"]),
@@ -43,8 +54,44 @@ def cells(path: Path) -> list[dict]:
             for cell in notebook["cells"]
             if cell["cell_type"] == "code"
         ]
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise CopyError(f"{path} is not a readable notebook ({error})") from error
+    except Exception as error:  # a copy may be broken in any way
+        raise CopyError(f"{path.name} is not a readable notebook ({_reason(error)})") from error
+
+
+def _read(path: Path) -> str:
+    """The text of a regular file. Raises CopyError for anything else, and OSError."""
+    if not stat.S_ISREG(path.stat().st_mode):  # before `open`, which may wait or wake a device
+        raise CopyError("it is a folder" if path.is_dir() else "it is not a regular file")
+    # no wait should it become a named pipe just now
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    with open(os.open(path, flags), "rb") as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise CopyError("it is not a regular file")
+        content = file.read(LARGEST + 1)
+    if len(content) > LARGEST:
+        raise CopyError(f"it is larger than {LARGEST // 2**20} MB")
+    return content.decode("utf-8-sig")
+
+
+def _reason(error: Exception) -> str:
+    """Why a copy cannot be read, in plain words."""
+    if isinstance(error, FileNotFoundError):
+        return "it is not there, or a link to a file that is not there"
+    if isinstance(error, PermissionError):
+        return "its permissions forbid to read it"
+    if isinstance(error, OSError):
+        return error.strerror or "the system cannot read it"
+    if isinstance(error, UnicodeDecodeError):
+        return "it is not UTF-8 text"
+    if isinstance(error, json.JSONDecodeError):
+        return f"it is not JSON: {error}"
+    if isinstance(error, RecursionError):
+        return "it is nested too deeply"
+    if isinstance(error, MemoryError):
+        return "it needs more memory than there is"
+    if isinstance(error, KeyError | TypeError | AttributeError):
+        return "it is JSON, but not the JSON of a notebook"
+    return str(error)
 
 
 def plain(source: str) -> str:
@@ -53,10 +100,10 @@ def plain(source: str) -> str:
 
 
 def _parsed(source: str) -> ast.Module | None:
-    """The cell as a tree; None for one that was left half-way."""
+    """The cell as a tree; None for one that was left half-way, or that Python cannot parse."""
     try:
         return ast.parse(plain(source))
-    except SyntaxError:
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None
 
 
@@ -86,8 +133,12 @@ def definitions(source: str) -> tuple[str, ...]:
     """
     tree = _parsed(source)
     kinds = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.ClassDef)
-    nodes = tree.body if tree else ()
-    return tuple(ast.unparse(n) for n in nodes if isinstance(n, kinds) or _is_literal(n))
+    found = []
+    for node in tree.body if tree else ():
+        with contextlib.suppress(RecursionError):  # a statement nested too deeply is left out
+            if isinstance(node, kinds) or _is_literal(node):
+                found.append(ast.unparse(node))
+    return tuple(found)
 
 
 def _is_literal(node: ast.stmt) -> bool:
@@ -101,7 +152,7 @@ def _is_literal(node: ast.stmt) -> bool:
 
 
 def exercises(path: Path) -> list[str]:
-    """The checks of a notebook's exercises, in order."""
+    """The checks of a notebook's exercises, in order. Raises CopyError."""
     found = [name for cell in cells(path) for name in checks_called(cell["source"])]
     return list(dict.fromkeys(found))
 
@@ -117,6 +168,27 @@ def of_copy(path: Path) -> dict[str, Answer]:
         answer = Answer(cell["source"], before)
         found |= dict.fromkeys(_intended(cell["source"]), answer)
         before += definitions(cell["source"])
+    return found
+
+
+def of_copies(paths: list[Path], handed_out: dict[str, Answer]) -> dict[str, Answer]:
+    """{check: the answer of the first copy that has one; else the cell as it was handed out}.
+
+    Raises CopyError where no copy can be read.
+    """
+    found: dict[str, Answer] = {}
+    failed = []
+    for path in reversed(paths):  # so the first one has the last word
+        try:
+            given = of_copy(path)
+        except CopyError as error:
+            failed.append(error)
+            continue
+        for name in handed_out.keys() & given.keys():
+            if name not in found or given[name].source != handed_out[name].source:
+                found[name] = given[name]
+    if len(failed) == len(paths):
+        raise failed[-1]
     return found
 
 
@@ -137,3 +209,38 @@ def preparation(path: Path) -> list[str]:
     """The cells that an exercise may rely on: those tagged imports, setup and twin."""
     wanted = {"imports", "setup", "twin"}
     return [cell["source"] for cell in cells(path) if wanted & set(cell["tags"])]
+
+
+def written(token: str, result: str, message: str) -> bytes:
+    """A result as a line, the message cut, with ? for what UTF-8 cannot write.
+
+    The token belongs to the question: nobody else's answer can have this result.
+    """
+    cut = message if len(message) <= LONGEST else message[:LONGEST] + CUT
+    clean = cut.encode("utf-8", "replace").decode("utf-8")
+    return b"\n" + json.dumps([token, result, clean]).encode() + b"\n"
+
+
+def read_back(line: bytes, token: str) -> tuple[str, str] | None:
+    """(result, message) of a line of `written`; None for anything else."""
+    try:
+        sign, result, message = json.loads(line)
+    except Exception:  # whatever ran there may have written it
+        return None
+    if not all(isinstance(one, str) for one in (sign, result, message)):
+        return None
+    if sign != token or result not in RESULTS or len(message) > LONGEST + len(CUT):
+        return None
+    return result, message
+
+
+def ending(code: int) -> str:
+    """How a process without a result ended; below 0 the code is that of a signal."""
+    if code >= 0:
+        return f"the process ended by itself, with status {code}"
+    try:
+        name = signal.Signals(-code).name
+    except ValueError:
+        name = f"signal {-code}"
+    why = ", perhaps because it was out of memory" if name == "SIGKILL" else ""
+    return f"the process was ended by {name}{why}"

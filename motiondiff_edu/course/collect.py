@@ -1,25 +1,41 @@
-"""`motiondiff-edu collect FOLDER`: run the exercises of many students' copies, into a table."""
+"""`motiondiff-edu collect FOLDER`: run the exercises of many students' copies, into a table.
+
+Nothing of a copy is read or run here: that is done by `trial`, in a process of its own.
+"""
 
 import argparse
+import contextlib
 import csv
 import io
 import json
 import os
+import secrets
+import select
+import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 
 from .._files import check_writable, replacing
 from . import answers
-from .answers import OPEN, RIGHT, UNREADABLE, Answer
+from .answers import DIED, OPEN, RIGHT, SLOW
 from .places import notebook_folder
 
 HELP = "run the exercises of many students' copies, and show which mistakes a class makes"
 EXAMPLE = "collect handed_in --out class.csv"
 ABSENT = "no copy"
 SIGNS = {RIGHT: "+", OPEN: ".", ABSENT: " "}  # all others: x
+WIDEST = 40  # characters of a student's name in the table
+COPIES = 20  # of one notebook by one student; the others, that changed earlier, are left out
+DEEPEST = 50  # folders, one in the other
+PREPARED = 300  # seconds to prepare a notebook's names
+GRACE = 5  # seconds more than an answer has, for `trial` to end it and to say so
+MARK = "MOTIONDIFF_COLLECT"  # environment variable of all processes that come of a runner
 
 
 class CollectError(ValueError):
@@ -31,10 +47,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Run the exercises of many students' copies. FOLDER has a folder for each student, with "
         "copies of the notebooks in it (deeper folders are looked into, too). Every answer runs "
-        "in a process of its own with limits of time and, on Linux, of memory. With it runs "
-        "what the student's cells before it define: imports, functions, classes, plain values. "
-        "That keeps answers apart; it is no protection against malice: do not run code of people "
-        "whom you do not trust."
+        "in a process and an empty folder of its own with limits of time and, on Linux, of "
+        "memory. With it runs what the student's cells before it define: imports, functions, "
+        "classes, plain values. That keeps answers apart; it is no protection against malice: do "
+        "not run code of people whom you do not trust."
     )
     parser.add_argument("folder", type=Path, metavar="FOLDER")
     parser.add_argument("--out", type=Path, metavar="FILE.csv", help="also write all results here")
@@ -56,19 +72,20 @@ def run(chosen: argparse.Namespace) -> int:
     if chosen.out:
         check_writable(chosen.out)
     copies = copies_of(chosen.folder, chosen.only)
-    rows = []
-    for number in sorted({number for _, number in copies}):
-        theirs = {who: paths for (who, nb), paths in copies.items() if nb == number}
-        count = sum(map(len, theirs.values()))
-        print(f"notebook {number}: {count} copies ...", file=sys.stderr, flush=True)
-        rows += results_of(number, theirs, chosen.seconds, chosen.gigabytes)
-    print(table(rows))
-    print(mistakes(rows))
+    rows, whole = results(copies, chosen.seconds, chosen.gigabytes)
+    say(table(rows))
+    say(mistakes(rows))
     if chosen.out:
         with replacing(chosen.out) as part:
             part.write_text(as_csv(rows), encoding="utf-8")
-        print(f"written: {chosen.out}")
-    return 0
+        say(f"written: {chosen.out}")
+    return 0 if whole else 1
+
+
+def say(text: str) -> None:
+    """Print it, with escapes for what the terminal's encoding does not have."""
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+    print(text.encode(encoding, "backslashreplace").decode(encoding))
 
 
 def copies_of(folder: Path, only: list[str]) -> dict[tuple[str, str], list[Path]]:
@@ -80,103 +97,247 @@ def copies_of(folder: Path, only: list[str]) -> dict[tuple[str, str], list[Path]
         raise CollectError(f"{folder} is no folder; it should have a folder for each student")
     wanted = {number.zfill(2) for number in only}
     found: dict[tuple[str, str], list[Path]] = {}
-    for path in sorted(folder.glob("*/**/[0-9][0-9]_*.ipynb")):
-        if ".ipynb_checkpoints" in path.parts or (wanted and path.name[:2] not in wanted):
-            continue
-        who = printable(path.relative_to(folder).parts[0])
-        found.setdefault((who, path.name[:2]), []).append(path)
+    for path in sorted(_notebooks(folder)):
+        if not wanted or path.name[:2] in wanted:
+            who = path.relative_to(folder).parts[0]
+            found.setdefault((name_of(who), path.name[:2]), []).append(path)
     if not found:
         raise CollectError(
             f"{folder} has no copies of the notebooks; expected for instance "
             f"{folder / 'a_student' / '02_noise.ipynb'}"
         )
+    students = {name_of(path.name) for path in folder.glob("[!.]*") if os.path.isdir(path)}
+    if none := sorted(students - {who for who, _ in found}):
+        progress(f"no copies were found in the folders: {', '.join(none)}")
     return {key: sorted(paths, key=_changed, reverse=True) for key, paths in found.items()}
 
 
-def printable(name: str) -> str:
-    """A folder's name; bytes that are no UTF-8 are written as \\udce9 and the like."""
-    return name.encode("utf-8", "backslashreplace").decode("utf-8")
+def _notebooks(folder: Path) -> Iterator[Path]:
+    """All that has the name of a notebook in the students' folders, also a folder of that name.
+
+    What cannot be listed is left out. A student's folder may be a link; no other one is followed.
+    """
+    todo = [(path, 1) for path in folder.iterdir() if path.name != ".ipynb_checkpoints"]
+    while todo:
+        inside, depth = todo.pop()
+        with contextlib.suppress(OSError):
+            for path in inside.iterdir():
+                if path.match("[0-9][0-9]_*.ipynb"):
+                    yield path
+                skipped = os.path.islink(path) or path.name == ".ipynb_checkpoints"
+                if depth < DEEPEST and not skipped and os.path.isdir(path):
+                    todo.append((path, depth + 1))
+
+
+def name_of(folder: str) -> str:
+    """The student's name: that of the folder, printable, and another one for each folder."""
+    return printable(folder.replace("\\", "\\\\"))
+
+
+def printable(text: str) -> str:
+    """The text with escapes (\\n, \\x1b, \\udce9) for what does not print."""
+    return "".join(
+        one if one.isprintable() else one.encode("unicode_escape").decode() for one in text
+    )
 
 
 def _changed(path: Path) -> float:
-    return path.stat().st_mtime
+    """When it changed; 0 for a link that leads nowhere."""
+    try:
+        return path.stat().st_mtime
+    except OSError:
+        return 0.0
+
+
+def results(
+    copies: dict[tuple[str, str], list[Path]], seconds: int, gigabytes: float
+) -> tuple[list[dict], bool]:
+    """The rows of all notebooks (`results_of`), and whether all could be prepared.
+
+    Raises CollectError where there is no row.
+    """
+    rows, failed = [], []
+    for number in sorted({number for _, number in copies}):
+        own = next(iter(sorted((notebook_folder() / "student").glob(f"{number}_*.ipynb"))), None)
+        theirs = {who: paths for (who, nb), paths in copies.items() if nb == number}
+        count = f"{sum(map(len, theirs.values()))} copies"
+        if own is None:
+            progress(f"notebook {number}: {count} left out, the course has no such notebook")
+            continue
+        progress(f"notebook {number}: {count} ...")
+        try:
+            rows += results_of(own, theirs, seconds, gigabytes)
+        except CollectError as error:  # the other notebooks are tried all the same
+            progress(str(error))
+            failed.append(error)
+    if not rows:
+        raise failed[0] if failed else CollectError("the course has no exercises for these copies")
+    return rows, not failed
+
+
+def progress(text: str) -> None:
+    """Print it beside the results."""
+    print(text, file=sys.stderr, flush=True)
 
 
 def results_of(
-    number: str, copies: dict[str, list[Path]], seconds: int, gigabytes: float
+    own: Path, copies: dict[str, list[Path]], seconds: int, gigabytes: float
 ) -> list[dict]:
-    """A row {"student", "notebook", "exercise", "result", "message"} for each exercise of each."""
-    own = next(iter(sorted((notebook_folder() / "student").glob(f"{number}_*.ipynb"))), None)
-    if own is None:
-        raise CollectError(f"the course has no notebook {number}")
-    handed_out = answers.of_copy(own)
-    rows = []
-    todo = []
-    for who, paths in copies.items():
-        try:
-            given = attempts(paths, handed_out)
-        except answers.CopyError as error:
-            rows += [_row(who, number, name, UNREADABLE, str(error)) for name in handed_out]
-            continue
-        for name in handed_out:
-            rows.append(_row(who, number, name, OPEN, "its cell is gone"))
-            if name in given:
-                answer = {"source": given[name].source, "before": given[name].before}
-                todo.append((rows[-1], {"check": name, **answer}))
-    if todo:
-        found = run_all(own, [answer for _, answer in todo], seconds, gigabytes)
-        for (row, _), (result, message) in zip(todo, found, strict=True):
-            row |= {"result": result, "message": message}
+    """A row {"student", "notebook", "exercise", "result", "message"} for each exercise of each.
+
+    `own` is the course's notebook. Raises CollectError where it cannot be prepared.
+    """
+    exercises = answers.exercises(own)
+    rows: list[dict] = []
+    if not exercises:
+        return rows
+    with Runner(own, seconds, gigabytes) as runner:
+        for who, paths in copies.items():
+            for name in exercises:
+                result, message = runner.ask(name, paths[:COPIES])
+                rows.append({
+                    "student": who, "notebook": own.name[:2], "exercise": name,
+                    "result": result, "message": printable(message),
+                })  # fmt: skip
     return rows
 
 
-def attempts(paths: list[Path], handed_out: dict[str, Answer]) -> dict[str, Answer]:
-    """{check: the answer of the first copy that has one; else the cell as it was handed out}.
+class Runner:
+    """`trial` for one notebook, in a process of its own: a result for each question.
 
-    Raises CopyError where no copy can be read.
+    It is started anew after it died or gave no result in time. Whatever is run there, `ask` has a
+    result in the end, and one answer's does not depend on another's.
     """
-    found: dict[str, Answer] = {}
-    failed = []
-    for path in reversed(paths):  # so the first one has the last word
-        try:
-            given = answers.of_copy(path)
-        except answers.CopyError as error:
-            failed.append(error)
-            continue
-        for name in handed_out.keys() & given.keys():
-            if name not in found or given[name].source != handed_out[name].source:
-                found[name] = given[name]
-    if len(failed) == len(paths):
-        raise failed[0]
-    return found
+
+    def __init__(self, notebook: Path, seconds: int, gigabytes: float) -> None:
+        self.notebook = notebook.resolve()
+        self.seconds = seconds
+        self.gigabytes = gigabytes
+        self.mark = secrets.token_hex(16)
+        self.process: subprocess.Popen[bytes] | None = None
+
+    def __enter__(self) -> "Runner":
+        self._start()
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._stop()
+
+    def ask(self, check: str, paths: list[Path]) -> tuple[str, str]:
+        """The result of a check, and a message: the answer is in one of these copies."""
+        question = {
+            "check": check, "paths": [str(path.absolute()) for path in paths],
+            "seconds": self.seconds, "gigabytes": self.gigabytes,
+        }  # fmt: skip
+        while True:
+            new = self.process is None
+            try:
+                if new:
+                    self._start()
+                with _empty_folder() as folder:
+                    return self._result(question | {"folder": folder}, self.seconds + GRACE)
+            except TimeoutError:
+                failed = SLOW, f"stopped after {self.seconds} s"
+            except EOFError as error:
+                failed = DIED, f"it ended the process that runs the answers: {error}"
+            except (CollectError, OSError, subprocess.TimeoutExpired) as error:
+                failed = DIED, str(error)
+            self._stop()
+            if new:  # in an old one the answers before may have done the harm
+                return failed
+
+    def _start(self) -> None:
+        """Prepare the notebook's names in a new process. Raises CollectError."""
+        command = [sys.executable, "-m", "motiondiff_edu.course.trial", str(self.notebook)]
+        package = str(Path(__file__).parents[2])  # this one, also where another is installed
+        path = os.pathsep.join([package, *filter(None, [os.environ.get("PYTHONPATH")])])
+        own = {"OMP_NUM_THREADS": "1", "MPLBACKEND": "Agg", "PYTHONPATH": path, MARK: self.mark}
+        with tempfile.TemporaryFile() as told, _empty_folder() as folder:
+            self.process = subprocess.Popen(
+                command,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=told,
+                bufsize=0,
+                cwd=folder,
+                env=os.environ | own,
+                start_new_session=True,
+            )
+            try:
+                self._result({}, PREPARED)
+            except BaseException as error:
+                self._stop()
+                if not isinstance(error, EOFError | TimeoutError):
+                    raise
+                told.seek(0)
+                last = told.read().decode("utf-8", "replace").strip().splitlines()[-1:]
+                why = last[0] if last else error
+                raise CollectError(f"{self.notebook.name} cannot be prepared: {why}") from None
+
+    def _result(self, question: dict, seconds: float) -> tuple[str, str]:
+        """Ask, and wait for the result. Raises TimeoutError, or EOFError when the process ended.
+
+        What is no result of this question is passed over.
+        """
+        assert self.process and self.process.stdin and self.process.stdout
+        until = time.monotonic() + seconds
+        token = secrets.token_hex(16)
+        line = b"\n" + json.dumps(question | {"token": token}).encode() + b"\n"
+        os.set_blocking(self.process.stdin.fileno(), False)  # it may have been stopped
+        with contextlib.suppress(BrokenPipeError):  # how it ended is found below
+            if self.process.stdin.write(line) != len(line):
+                raise EOFError("it takes no questions")
+        rest = b""
+        while (left := until - time.monotonic()) > 0:
+            if not select.select([self.process.stdout], [], [], min(left, 0.5))[0]:
+                if self.process.poll() is None:
+                    continue
+                raise EOFError(answers.ending(self.process.returncode))
+            new = os.read(self.process.stdout.fileno(), 2**16)
+            if not new:
+                raise EOFError(answers.ending(self.process.wait(GRACE)))
+            *lines, rest = (rest + new).split(b"\n")
+            rest = rest[-(2**16) :]
+            for found in (answers.read_back(one, token) for one in lines):
+                if found:
+                    return found
+        raise TimeoutError("it takes too long")
+
+    def _stop(self) -> None:
+        """End the process and, as far as they can be found, all that came of it."""
+        if self.process is None:
+            return
+        with contextlib.suppress(OSError):
+            os.killpg(self.process.pid, signal.SIGKILL)
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self.process.wait(GRACE)
+        for stream in (self.process.stdin, self.process.stdout):
+            if stream:
+                stream.close()
+        self.process = None
+        _end_marked(self.mark.encode())
 
 
-def _row(who: str, number: str, name: str, result: str, message: str) -> dict:
-    return {
-        "student": who, "notebook": number, "exercise": name, "result": result, "message": message,
-    }  # fmt: skip
+@contextlib.contextmanager
+def _empty_folder() -> Iterator[str]:
+    """A new folder, that is removed with all that was put there."""
+    folder = tempfile.mkdtemp(prefix="motiondiff_collect_")
+    try:
+        yield folder
+    finally:
+        with contextlib.suppress(OSError, RecursionError):
+            shutil.rmtree(folder)
+        if os.path.lexists(folder):  # unlike shutil, rm removes folders however deep they lie
+            subprocess.run(["rm", "-rf", "--", folder], stderr=subprocess.DEVNULL)
 
 
-def run_all(notebook: Path, todo: list[dict], seconds: int, gigabytes: float) -> list[list[str]]:
-    """(result, message) of each answer, from `trial` in another process and an empty folder."""
-    given = {"answers": todo, "seconds": seconds, "gigabytes": gigabytes}
-    with tempfile.TemporaryDirectory(prefix="motiondiff_collect_") as folder:
-        empty, results = Path(folder) / "empty", Path(folder) / "results.json"
-        empty.mkdir()
-        command = [sys.executable, "-m", "motiondiff_edu.course.trial", str(notebook.resolve())]
-        done = subprocess.run(
-            [*command, str(results)],
-            input=json.dumps(given),
-            stdout=subprocess.DEVNULL,  # whatever runs there may write to it
-            stderr=subprocess.PIPE,
-            text=True,
-            cwd=empty,
-            env=os.environ | {"OMP_NUM_THREADS": "1", "MPLBACKEND": "Agg"},
-        )
-        if done.returncode:
-            last = (done.stderr.strip().splitlines() or ["it ended without a word"])[-1]
-            raise CollectError(f"{notebook.name} cannot be prepared: {last}")
-        return json.loads(results.read_text(encoding="utf-8"))
+def _end_marked(mark: bytes) -> None:
+    """On Linux, end the processes whose environment has this mark."""
+    for _ in range(3):  # they may start others meanwhile
+        for path in Path("/proc").glob("[0-9]*/environ"):
+            with contextlib.suppress(OSError):
+                if mark in path.read_bytes():
+                    os.kill(int(path.parent.name), signal.SIGKILL)
 
 
 def table(rows: list[dict]) -> str:
@@ -184,7 +345,7 @@ def table(rows: list[dict]) -> str:
     columns = list(dict.fromkeys((row["notebook"], row["exercise"]) for row in rows))
     students = sorted({row["student"] for row in rows})
     result = {(row["student"], row["notebook"], row["exercise"]): row["result"] for row in rows}
-    width = max(map(len, students))
+    width = min(WIDEST, max(map(len, students)))
     numbers = list(dict.fromkeys(number for number, _ in columns))
     head = " ".join(
         f"{number:<{max(2, sum(one == number for one, _ in columns))}}" for number in numbers
@@ -196,7 +357,8 @@ def table(rows: list[dict]) -> str:
             results = [result.get((who, n, name), ABSENT) for n, name in columns if n == number]
             right += results.count(RIGHT)
             groups.append(f"{''.join(SIGNS.get(one, 'x') for one in results):<2}")
-        lines.append(f"{who:{width}}  {' '.join(groups)}  {right} of {len(columns)}")
+        name = who if len(who) <= width else who[: width - 1] + "~"
+        lines.append(f"{name:{width}}  {' '.join(groups)}  {right} of {len(columns)}")
     return "\n".join(["", *lines, "", "+ right   x wrong or failed   . not attempted", ""])
 
 
@@ -220,5 +382,10 @@ def as_csv(rows: list[dict]) -> str:
     fields = ("student", "notebook", "exercise", "result", "message")
     writer = csv.DictWriter(text, fields, lineterminator="\n")
     writer.writeheader()
-    writer.writerows(rows)
+    writer.writerows({name: _no_formula(row[name]) for name in fields} for row in rows)
     return text.getvalue()
+
+
+def _no_formula(text: str) -> str:
+    """The text; with a quote before it where a spreadsheet would calculate it."""
+    return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r")) else text

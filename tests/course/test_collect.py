@@ -44,6 +44,7 @@ STUB = """def my_constant_beta(S, left):
 
 checks.constant_beta(my_constant_beta)"""
 HELPER = RIGHT.replace("left ** (2 / S)", "power(left, TWO / S)")
+TIDY = "import os\nassert not os.listdir()\nopen('left', 'w').close()\n"
 RIGHT_WAYS = {
     "called_again": [RIGHT, CALL],
     "own_cell": [STUB, RIGHT.replace(CALL, ""), CALL],
@@ -52,6 +53,9 @@ RIGHT_WAYS = {
     "timed": ["%%time\n" + RIGHT],
     "shell": ["!ls\n" + RIGHT],
     "noted": [RIGHT, f"# {CALL} passes now\nx = 1"],
+    # what an answer leaves in its folder, the next one does not see
+    "leaves_a_file": [TIDY + RIGHT],
+    "sees_no_file": [TIDY + RIGHT],
     "lambda": ["my_constant_beta = lambda S, left: 1 - left ** (2 / S)", CALL],
 }
 # those whose exercise is open
@@ -113,7 +117,7 @@ def handed_in(tmp_path_factory):
 def collected(handed_in, tmp_path_factory):
     """What it prints, the rows of its file, and what it says beside."""
     out = tmp_path_factory.mktemp("out") / "class.csv"
-    command = ["collect", str(handed_in), "--out", str(out), "--seconds", "5", "--gigabytes", "1"]
+    command = ["collect", str(handed_in), "--out", str(out), "--seconds", "3", "--gigabytes", "1"]
     done = subprocess.run(
         [sys.executable, "-m", "motiondiff_edu", *command], capture_output=True, text=True
     )
@@ -131,10 +135,10 @@ def test_each_answer_gets_its_result(collected):
     _, rows, _ = collected
     assert of(rows, "ada") == ("right", "")
     assert of(rows, "bo")[0] == "wrong" and "amplitude" in of(rows, "bo")[1]
-    assert of(rows, "di") == ("too slow", "stopped after 5 s")
+    assert of(rows, "di") == ("too slow", "stopped after 3 s")
     if sys.platform == "linux":
         assert of(rows, "ed")[0] in ("wrong", "died") and "memory" in of(rows, "ed")[1].lower()
-    assert of(rows, "fu")[0] == "died"
+    assert of(rows, "fu") == ("died", "the process ended by itself, with status 3")
     assert of(rows, "gil")[0] == "failed" and "SystemExit" in of(rows, "gil")[1]
     assert of(rows, "ha")[0] == "failed" and "SyntaxError" in of(rows, "ha")[1]
     assert of(rows, "io") == ("not attempted", "")
@@ -225,6 +229,37 @@ def test_what_cannot_be_collected_is_told(arguments, told, tmp_path, monkeypatch
     monkeypatch.chdir(tmp_path)
     assert main(["collect", *arguments]) == 1
     assert told in capsys.readouterr().err
+
+
+def test_a_notebook_that_the_course_does_not_have_is_left_out(tmp_path, capsys):
+    (tmp_path / "x").mkdir()
+    (tmp_path / "x" / "99_notes.ipynb").write_text("{}")
+    assert main(["collect", str(tmp_path)]) == 1
+    told = capsys.readouterr().err
+    assert "notebook 99: 1 copies left out, the course has no such notebook" in told
+    assert "the course has no exercises for these copies" in told
+
+
+def test_a_student_without_a_copy_is_named(tmp_path, capsys):
+    for who in ("ann", "bo\x1b"):
+        (tmp_path / who).mkdir()
+    (tmp_path / "ann" / NAME).write_text("{}")
+    assert list(collect.copies_of(tmp_path, [])) == [("ann", "02")]
+    assert capsys.readouterr().err == "no copies were found in the folders: bo\\x1b\n"
+
+
+def test_two_folders_never_have_one_name():
+    names = ["a\x1b", "a\\x1b", "a\\\\x1b", os.fsdecode(b"\xe9"), "\\udce9", "Zoë"]
+    shown = [collect.name_of(name) for name in names]
+    assert len(set(shown)) == len(names) and all(name.isprintable() for name in shown)
+
+
+@pytest.mark.parametrize("line", [b"", b"{", b"[]", b"[1, 2, 3]", b'["t", ["right"], ""]'])
+def test_what_is_no_result_of_the_question_is_not_read(line):
+    assert answers.read_back(line, "t") is None
+    assert answers.read_back(answers.written("other", "right", ""), "t") is None
+    assert answers.read_back(answers.written("t", "great", ""), "t") is None
+    assert answers.read_back(answers.written("t", "right", "x" * 9999), "t")
 
 
 def test_answers_are_found_wherever_they_were_moved_to(tmp_path):
