@@ -32,6 +32,8 @@ from .idioms import (
 )
 from .text import base_forms, synonyms
 
+SYNONYMS_SAY = {"get up": "rise", "step back": "back", "move back": "back"}
+
 
 @dataclass
 class Head:
@@ -230,13 +232,11 @@ def head_of(token: str, following: Sequence[str], heads: list[Head], notes: list
     if known:
         return known
     for form in (token, *base_forms(token)):
-        other = synonyms().get(form, "").split()
-        if other and other[0] in HEADS and len(other) == 1:
-            return HEADS[other[0]]
-        if other[:2] == ["get", "up"]:
-            return "rise"
-        if other[1:] == ["back"]:
-            return "back"
+        other = synonyms().get(form, "")
+        verb = SYNONYMS_SAY.get(other) or HEADS.get(other, "")
+        if verb:
+            notes.append(f"{token!r} is read as {other!r}")
+            return verb
     if len(token) > 3:
         swapped = [word for word in spelled() if sorted(word) == sorted(token)]
         near = swapped or get_close_matches(token, spelled(), 1, 0.84)

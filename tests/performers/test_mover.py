@@ -68,12 +68,12 @@ def test_padding_changes_no_token_and_the_order_of_words_does():
 
 
 def test_a_sentence_makes_motions(mover):
-    alone = mover.act("walks forward", seconds=2.5, steps=3, progress=False)
+    alone = mover.act("walks forward", seconds=2.5, steps=3, progress=False, tries=1)
     assert alone.positions.shape == (50, 21, 3) and alone.source == "walks forward"
-    first, second = mover.act("walks forward", seconds=2.5, samples=2, steps=3, progress=False)
+    first, second = mover.act("walks forward", seconds=2.5, samples=2, steps=3, progress=False, tries=1)
     assert np.abs(first.positions - alone.positions).max() < 1e-3
     assert np.abs(second.positions - alone.positions).max() > 0.01
-    other = mover.act("kicks with the left foot", seconds=2.5, steps=3, progress=False)
+    other = mover.act("kicks with the left foot", seconds=2.5, steps=3, progress=False, tries=1)
     assert np.abs(other.positions - alone.positions).max() > 0.001
 
 
@@ -83,15 +83,15 @@ def test_an_act_has_bones_of_the_course(mover):
     shaken = torch.from_numpy(clip + 0.005 * np.sin(np.arange(clip.size)).reshape(clip.shape))
     acting = replace(mover)
     object.__setattr__(acting, "positions_of", lambda x0: shaken[None])
-    made = Mover.act(acting, "walks", seconds=2.0, progress=False).positions
+    made = Mover.act(acting, "walks", seconds=2.0, progress=False, tries=1).positions
     np.testing.assert_allclose(bone_lengths(made), BONE_LENGTHS[None].repeat(40, 0), atol=1e-3)
     assert np.abs(bone_lengths(shaken.numpy()) - BONE_LENGTHS).max() > 0.005
     assert np.abs(made - clip).max() < 0.03
 
 
 def test_a_length_between_those_of_the_training_is_cut_from_the_next_one(mover):
-    long = mover.act("walks", seconds=2.4, steps=2, progress=False).positions
-    short = mover.act("walks", seconds=2.05, steps=2, progress=False).positions
+    long = mover.act("walks", seconds=2.4, steps=2, progress=False, tries=1).positions
+    short = mover.act("walks", seconds=2.05, steps=2, progress=False, tries=1).positions
     assert len(long) == 48 and len(short) == 41
     np.testing.assert_array_equal(short, long[:41])
 
@@ -152,14 +152,14 @@ def test_plans_are_guided_too(planning):
 
 def test_a_mover_in_training_acts_without_dropout(mover):
     mover = Mover(mover.model, mover.schedule, mover.motion_scaler)
-    before = mover.act("walks", seconds=2.0, steps=2, progress=False).positions
+    before = mover.act("walks", seconds=2.0, steps=2, progress=False, tries=1).positions
     mover.model.train()
     try:
-        after = mover.act("walks", seconds=2.0, steps=2, progress=False).positions
+        after = mover.act("walks", seconds=2.0, steps=2, progress=False, tries=1).positions
         assert all(part.training for part in mover.model.modules())
         frozen = next(part for part in mover.model.modules() if isinstance(part, torch.nn.Linear))
         frozen.eval()
-        mover.act("walks", seconds=2.0, steps=2, progress=False)
+        mover.act("walks", seconds=2.0, steps=2, progress=False, tries=1)
         assert [part for part in mover.model.modules() if not part.training] == [frozen]
     finally:
         mover.model.eval()
@@ -169,7 +169,7 @@ def test_a_mover_in_training_acts_without_dropout(mover):
 @pytest.mark.parametrize("guidance", [float("nan"), -3.0, float("inf"), 21.0])
 def test_guidance_is_a_number_from_0_to_20(mover, guidance):
     with pytest.raises(ValueError, match="guidance must be a number from 0 to 20"):
-        mover.act("walks", seconds=2.0, steps=2, guidance=guidance, progress=False)
+        mover.act("walks", seconds=2.0, steps=2, guidance=guidance, progress=False, tries=1)
 
 
 def test_the_bar_counts_the_plan_as_well(mover, monkeypatch):
@@ -179,7 +179,7 @@ def test_the_bar_counts_the_plan_as_well(mover, monkeypatch):
         return lambda loop: (told.append(total) or step for step in loop)
 
     monkeypatch.setattr("motiondiff_edu.performers.mover.bar", counting)
-    mover.act("walks", seconds=2.0, steps=3)
+    mover.act("walks", seconds=2.0, steps=3, tries=1)
     assert told == [3 + 1] * (3 + 1) * (1 + mover.can_plan)
 
 
@@ -223,10 +223,10 @@ def test_what_cannot_be_acted_is_refused_in_words(mover, text, options, told):
 
 def test_a_word_that_is_read_as_another_is_said(mover):
     with pytest.warns(UserWarning, match="'marches' is read as 'walk'"):
-        marched = mover.act("marches ahead", seconds=2, steps=2, progress=False)
+        marched = mover.act("marches ahead", seconds=2, steps=2, progress=False, tries=1)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        walked = mover.act("walks ahead", seconds=2, steps=2, progress=False)
+        walked = mover.act("walks ahead", seconds=2, steps=2, progress=False, tries=1)
     assert np.array_equal(marched.positions, walked.positions)
 
 
@@ -234,7 +234,7 @@ def test_a_mover_comes_back_from_its_file(mover, tmp_path):
     path = checkpoints.save(mover, tmp_path / "mine.safetensors", bits=32)
     back = md.load(path)
     assert isinstance(back, Mover) and back.config == mover.config and back.card == mover.card
-    one, two = (who.act("turns left", seconds=2, steps=2, progress=False) for who in (mover, back))
+    one, two = (who.act("turns left", seconds=2, steps=2, progress=False, tries=1) for who in (mover, back))
     np.testing.assert_array_equal(one.positions, two.positions)
     with pytest.raises(AttributeError, match="a mover cannot walk; md.load"):
         back.walk()
@@ -286,7 +286,7 @@ def test_a_mover_can_be_trained(windows):
 
     state = TrainState.start(model, 0, torch.optim.Adam(model.parameters(), 3e-3), 0.9)
     losses = [
-        one.loss for one in train_steps(state, loss_fn, 60, lr=lambda k: 3e-3, progress=False)
+        one.loss for one in train_steps(state, loss_fn, 60, lr=lambda k: 3e-3, progress=False, tries=1)
     ]
     assert np.mean(losses[-10:]) < 0.8 * np.mean(losses[:10])
     assert model.words.embed.weight.grad.abs().sum() > 0
