@@ -60,7 +60,7 @@ def stands_between(acted: Acted) -> float:
     legs = [span for span in acted.spans if VERBS[span.act.verb].kind != "arms"]
     longest = 0.0
     for a, b in zip(legs, legs[1:], strict=False):
-        if "stand" in (a.act.verb, b.act.verb):
+        if "stand" in (a.act.verb, b.act.verb) or a.act.verb == "sit":  # who sits, sits still
             continue
         first, last = round(a.last * acted.fps), round((b.first + 0.2) * acted.fps)
         for begun, ended in runs(still[first:last]):

@@ -339,7 +339,9 @@ def give_back(more: Head, heads: list[Head]) -> None:
 # ---- from words to acts --------------------------------------------------------------------------
 def made(head: Head, notes: list[str]) -> Iterator[tuple[Head, Act]]:
     """The act of a verb with what is said of it; sometimes two."""
-    verb, side, ways = head.verb, head.side, set(head.ways)
+    verb = head.verb
+    side = head.side
+    ways = set(head.ways)
     held = None
     if verb == "strike":
         verb = "kick" if "leg" in head.limbs else "punch"

@@ -1,6 +1,5 @@
 """Attention over words: rows, layers, padding of the sentence, and what is refused."""
 
-
 import numpy as np
 import pytest
 import small_movers

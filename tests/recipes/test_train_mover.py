@@ -236,7 +236,11 @@ def test_a_network_for_motions_alone_is_not_shown_the_timelines(planned, windows
     trained = train_mover(narrow, tmp_path / "narrow.safetensors", planned, log=quiet)
     assert trained.motion_scaler.mean.shape == (D,)
     torch.testing.assert_close(trained.motion_scaler.std, windows.scaler.std[:D])
-    assert trained.act("walks", seconds=2, steps=2, progress=False, tries=1).positions.shape == (40, 21, 3)
+    assert trained.act("walks", seconds=2, steps=2, progress=False, tries=1).positions.shape == (
+        40,
+        21,
+        3,
+    )
     x, wide = windows.draw(400, seeded()), planned.draw(400, seeded())
     torch.testing.assert_close(x[0], wide[0][..., :D])
     assert all(torch.equal(a, b) for a, b in zip(x[1:], wide[1:], strict=True))

@@ -12,7 +12,6 @@ from motiondiff_edu.motion.moving_frame import to_features
 from motiondiff_edu.motion.skeleton import MIRROR
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.performers.networks import network
-from motiondiff_edu.performers.planned_mofusion import PlannedMoFusion
 from motiondiff_edu.pretrained.judges import judges
 from motiondiff_edu.recipes.mover import MOVER
 from tools.results.sweep import run
@@ -276,8 +275,8 @@ def test_a_choice_is_trained_and_measured(some, tmp_path, monkeypatch):
     panel = scores.Panel(judges()[:1], few)
     monkeypatch.setattr(scores, "r_precision", lambda *x: (0.1, 0.2, 0.3))  # too few for pools
     sweep = budget.sweep(budget.QUICK, tmp_path / "runs", panel)
-    found = run(sweep, "no-self-attention", tmp_path, "python -m x")
-    records = {one["name"].removeprefix("words-budget.no-self-attention."): one for one in found}
+    found = run(sweep, "no-kinematic", tmp_path, "python -m x")
+    records = {one["name"].removeprefix("words-budget.no-kinematic."): one for one in found}
     one = records["action_accuracy"]
     assert one["low"] <= one["value"] <= one["high"] and one["seeds"]["trainings"] == 2
     bones = [records[f"bone_rmse_cm.seed{k}"]["value"] for k in (0, 1)]
@@ -296,12 +295,6 @@ def test_the_choices_differ_from_the_recipe_as_they_say():
     lengths = {"steps": MOVER.steps, "plan_steps": MOVER.plan_steps, "frames": MOVER.frames}
     assert replace(budget.SMALL, config=MOVER.config, **lengths) == MOVER
     bag = budget.recipe_of("bag", 0, budget.FULL).config
-    assert type(network(bag)).__name__ == "BagMoFusion" and bag.depth == MOVER.config.depth
-    paper = budget.recipe_of("no-self-attention", 0, budget.FULL).config
-    kinds = [type(network(config)) for config in (paper, budget.SIZES)]
-    assert kinds == [budget.Convolutions, PlannedMoFusion]
-    beside = [{n for n, _ in network(c).named_parameters()} for c in (paper, budget.SIZES)]
-    assert {n.split(".")[0] for n in beside[1] - beside[0]} == {"planner", "performer"}
-    assert not beside[0] - beside[1] and not any(".own." in n or ".when." in n for n in beside[0])
+    assert type(network(bag)).__name__ == "BagMoFusion" and bag.widths == budget.SIZES.widths
     alone = budget.recipe_of("no-timeline", 0, budget.FULL).config
     assert alone.D == 66 and type(network(alone)).__name__ == "TextMoFusion"

@@ -59,7 +59,6 @@ def test_the_same_question_is_answered_once(mover, monkeypatch):
         ("does a cartwheel", "does not know"),
         ("geht vorwärts", "does not know"),
         ("walks " * 80, "the network reads"),
-        ("<b>walks</b> <script>alert(1)</script>", "&#x27;script&#x27;"),
     ],
 )
 def test_what_cannot_be_acted_is_said_and_the_motions_stay(mover, text, told):
@@ -74,6 +73,13 @@ def test_what_cannot_be_acted_is_said_and_the_motions_stay(mover, text, told):
     assert "alert" not in box.message.value and box.motions is not before
     with pytest.raises(TextError):
         Prompt(mover, "does a cartwheel")
+
+
+def test_words_that_are_left_out_are_said_and_run_nothing(mover):
+    box = Prompt(mover, "walks", seconds=2.0)
+    box.text.value = "<b>walks</b> <script>alert(1)</script>"
+    assert "left out: &#x27;script&#x27;" in box.message.value
+    assert "<script>" not in box.message.value
 
 
 def test_back_at_the_answered_sentence_the_refusal_goes(mover):
