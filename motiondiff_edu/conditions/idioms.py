@@ -14,15 +14,50 @@ OWN = r"(?:(?:both|the|his|her|their|your|my|its|one's|a|one|two) )*"  # before 
 REWRITTEN = tuple(
     (re.compile(pattern.replace("{own}", OWN)), other)
     for pattern, other in (
+        (r"\b(but|and) (first|before (that|this|it))\b,?", " before-it "),
+        (r"\bbefore (that|this|it)\b,?", " before-it "),
         (
-            r"\bfirst(ly)?\b,?|\bto (start|begin) with\b,?|\b(starts?|begins?) (off )?(by|with)\b",
+            r"\b(show|give) (me|us)\b|\blet('s| us)( see)?\b|\bi (want|would like|'d like)( to see)?\b",
             " ",
         ),
+        (r"\bthe (first|last|next) thing( that)? (he|she|it|they) (does?|do) is( to)?\b", " | "),
+        (
+            r"\b(no,? )?wait,? no\b|\bno,? wait\b|\bi mean\b|\bscratch that\b|\bor rather\b",
+            " i-mean ",
+        ),
+        (r"\bonce (he|she|it|they)('s|'ve| is| has| have)? (finished|done)( with)?\b", " after "),
+        (
+            r"\bfirst(ly)?\b,?|\bto (start|begin) with\b,?|"
+            r"\b(start|begin)(s|ing|ning)?( off| out)?( by| with| to)?\b",
+            " ",
+        ),
+        (r"\b(keep|continue)s?( on)?( to)? (?=\w+ing\b|walk|run)", " "),
+        (
+            r"\b(slow|break|speed|chang|transition|switch|mov|go|com)(e?s|ing|e)?( down| up)? "
+            r"(in)?to (a |an )?(slow |quick )?(?=(walk|run|jog|sprint|stop|halt|standstill)\b)",
+            r" | \6",
+        ),
+        (r"\b(speed|power)[- ]?walk(s|ing)?\b", " walk quickly "),
+        (r"\b(shadow[- ]?)?boxing\b", " punch some-times "),
+        (r"\bover and over( again)?\b|\bagain and again\b|\brepeatedly\b", " some-times "),
+        (
+            r"\b(jump|leap|spring|hop|get|stand)(s|ing)? (right |quickly )?up from "
+            r"(sitting|{own}(chair|seat|stool|bench))\b",
+            " rise ",
+        ),
+        (
+            r"\b(fac|turn|look)(es?|s|ing|e)? {own}(other|opposite) (way|direction)\b",
+            " turn around ",
+        ),
+        (r"\bturn(s|ing)? about\b", " turn around "),
+        (r"\b(not|without) moving\b", " "),
+        (r"\bin a (hurry|rush)\b", " quickly "),
+        (r"\blike\b(?! an?\b)|\bhow about\b|\bfor a (moment|while|second|bit)\b", " "),
         (r"\b(ends?|finish(es)?) (up )?(by|with)\b", " | "),
         (r"\b(and|but|,)?\s*(then|next|afterwards?|later|subsequently|finally|lastly)\b,?", " | "),
         (r"\b(and )?(after|following) (that|this|which|it)\b,?", " | "),
         (r"\bat (the )?(very )?end\b|\bin the end\b", " | "),
-        (r"\b(which is |and is |is )?followed by\b|\bbefore\b|\buntil\b", " | "),
+        (r"\b(which is |and is |is )?followed by\b|\buntil\b", " | "),
         (
             r"\bat the same time\b,?( as\b)?|\bsimultaneously\b|\ball the while\b|\bmeanwhile\b",
             " & ",
@@ -37,13 +72,15 @@ REWRITTEN = tuple(
             " turn around ",
         ),
         (r"\bhalf round\b", " around "),
+        (r"\b(stands?|standing) (up |very )?straight\b(?! up)", " stand "),
         (
             r"\b(stands?|standing|stood|gets?|getting|got|gat) (right |straight )?(back )?up\b",
             " rise ",
         ),
         (r"\b(gets?|getting) (back )?(on|to) {own}feet\b", " rise "),
+        (r"\b(go|come|get)(es|s|ing)? (back )?(down|up)\b", r" \1-\4 "),
         (r"\b(stands?|standing) (still|motionless)\b", " stand "),
-        (r"\btak(es?|ing) a seat\b|\b(is |be |gets? )?seated\b", " sit "),
+        (r"\b(tak|hav|grab)(es?|s|ing) a seat\b|\b(is |be |gets? )?seated\b", " sit "),
         (r"\b(hands?|arms?) (together) in a clap\b", " clap "),
         (r"\bup in a kick\b", " "),
         (r"\bback(s|ing|ed)? (away|up|off)\b", " walk backwards "),
@@ -81,6 +118,11 @@ REWRITTEN = tuple(
             r"(?:raised|up|overhead|high)\b",
             lambda m: f"{m[1]} & hold-{(m[2] or m[4] or '').strip()} ",
         ),
+        (r"^(.*)\band\b(.*) together\b", r"\1 & \2"),
+        (
+            r"(\bturn(?:s|ing)? a?round\b.*?\b(?:walk|run|jog|go|stroll)(?:e?s|ing)?) back\b",
+            r"\1 forward",
+        ),
         (r"\bjumping jacks?\b|\bstar jumps?\b", " jumping-jacks "),
     )
 )
@@ -114,14 +156,14 @@ LIGHT = frozenset(
 SIDES = {"left": "left", "right": "right", "both": "both", "two-handed": "both", "either": ""}
 NUMBERS = {
     "once": 1, "one": 1, "single": 1, "twice": 2, "two": 2, "thrice": 3, "three": 3, "four": 4,
-    "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9, "ten": 10, "dozen": 12,
+    "few": 3, "several": 3, "some-times": 3, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9, "ten": 10, "dozen": 12,
 }  # fmt: skip
 PACES = {
     **dict.fromkeys(
         "slowly slow gently gentle leisurely calmly lazily unhurried carefully".split(), "slowly"
     ),
     **dict.fromkeys(
-        "quickly quick fast rapidly rapid briskly brisk hastily swiftly swift speedily".split(),
+        "quickly quick fast rapidly rapid briskly brisk hastily swiftly swift speedily hurriedly frantically furiously".split(),
         "quickly",
     ),
 }
@@ -140,8 +182,13 @@ FILLERS = PASSED_OVER | frozenset(
     "and or with without to in out over again also along down low deep deeply place pace time times"
     " chair stool seat air shoulder body person man woman figure people child politely hard happily"
     " proudly casually lightly softly nicely bit motion movement spot floor ground own way himself"
-    " herself itself themselves still same then few more please let make together".split()
+    " herself itself themselves still same then more please pls thanks thx let make together ok okay so um uh"
+    " hmm well maybe away off over excitedly enthusiastically cheerfully joyfully".split()
 )
+# counts that are not meant exactly: steps of a walk are not counted
+VAGUE = frozenset("few several some-times".split())
+# after "a" or "the" these are things, no acts
+THINGS = frozenset("box face point show stand".split())
 # acts that are done to somebody, who is named after these words and need not be there
 TOWARDS = ("to", "at", "for")
 WHOSE = frozenset("a an the his her their my your its our all some".split())

@@ -26,12 +26,15 @@ from .idioms import (
     PACES,
     REWRITTEN,
     SIDES,
+    THINGS,
     TOWARDS,
+    VAGUE,
     WAYS,
     WHOSE,
 )
 from .text import base_forms, synonyms
 
+ONWARD = ("walk", "run", "back")  # what arms are moved along with, for "walks and waves"
 SYNONYMS_SAY = {"get up": "rise", "step back": "back", "move back": "back"}
 
 
@@ -44,6 +47,7 @@ class Head:
     joined: str = ""  # "and", "," or "ing": a participle without "and"
     side: str = ""
     count: int = 0
+    vague: bool = False  # "a few times", which is not counted exactly
     speed: str = ""
     ways: list[str] = field(default_factory=list)
     limbs: list[str] = field(default_factory=list)
@@ -64,7 +68,21 @@ def understand(text: str) -> Understood:
     parts: list[tuple[Act, ...]] = []
     for clause in filter(None, clauses):
         parts += parts_of(clause, notes) or again(clause, parts)
-    return Understood(tuple(parts), tuple(dict.fromkeys(notes)))
+    return Understood(tuple(counted_together(parts)), tuple(dict.fromkeys(notes)))
+
+
+def counted_together(parts: Sequence[tuple[Act, ...]]) -> list[tuple[Act, ...]]:
+    """The same with "clap, clap, clap" as one act that is done three times."""
+    found: list[tuple[Act, ...]] = []
+    for part in parts:
+        if found and len(part) == len(found[-1]) == 1:
+            (last,), (act,) = found[-1], part
+            times = max(last.count, 1) + max(act.count, 1)
+            if replace(last, count=0) == replace(act, count=0) and times <= KINDS[act.verb].most:
+                found[-1] = (replace(last, count=times),)
+                continue
+        found.append(part)
+    return found
 
 
 def again(clause: str, parts: list[tuple[Act, ...]]) -> list[tuple[Act, ...]]:
@@ -81,15 +99,35 @@ def rewritten(text: str) -> str:
     low = re.sub(r"[.;!?:\n]+", " | ", low)
     for pattern, other in REWRITTEN:
         low = " ".join(pattern.sub(other, low).split())
-    # "X after Y" and "after Y, X": Y comes first
-    pieces = re.split(r"\bafter\b", low)
-    if len(pieces) == 2:
-        before, later = pieces
-        if before.strip():
-            low = f"{later} | {before}"
-        else:
-            low = later.replace(",", " | ", 1)
-    return low
+    return other_side(in_their_order(low))
+
+
+def in_their_order(low: str) -> str:
+    """Acts in the order in which they are done, for "X after Y", "before X, Y", "X, but first Y"."""
+    for word, first in ((r"\bafter\b", 1), (r"(?:[|,]|\bbut\b|\band\b)* ?\bbefore-it\b,?", 1)):
+        pieces = re.split(word, low)
+        if len(pieces) == 2 and pieces[0].strip(" |,"):
+            low = f"{pieces[first]} | {pieces[1 - first]}"
+        elif len(pieces) == 2:
+            low = pieces[1].replace(",", " | ", 1)
+    match = re.match(r"[ |,]*before\b([^,|]*),(.*)", low)
+    low = f"{match[2]} | {match[1]}" if match else low
+    return re.sub(r"\bbefore\b", " | ", low)
+
+
+def other_side(low: str) -> str:
+    """With "left" or "right" in place of "the other hand"."""
+    last, words = "", low.split()
+    for k, word in enumerate(words):
+        last = word if word in ONE else last
+        if (
+            word == "other"
+            and last
+            and words[k + 1 : k + 2]
+            and words[k + 1] in {*LIMBS, "side", "one"}
+        ):
+            words[k] = last = ONE[1 - ONE.index(last)]
+    return " ".join(words)
 
 
 def parts_of(clause: str, notes: list[str]) -> list[tuple[Act, ...]]:
@@ -119,7 +157,12 @@ def joined_acts(group: list[tuple[Head, Act]]) -> list[tuple[Act, ...]]:
             if (
                 "arms" in kinds
                 and len(kinds) == 2
-                and ("way" in kinds or head.joined == "ing" or held)
+                and (
+                    last.verb in ONWARD
+                    and head.joined in ("and", "")
+                    or head.joined == "ing"
+                    or held
+                )
             ):
                 parts[-1:] = at_once(parts[-1], (act,))
                 continue
@@ -154,14 +197,21 @@ def acts_in(piece: str, notes: list[str]) -> Iterator[tuple[Head, Act]]:
             before, joined = Head("", ""), ""
             continue
         if token in (",", "and"):
-            joined = "and"
+            joined = "," if "," in (token, joined) else "and"
             give_back(before, heads)
-            subject = []  # "juggles and walks": what comes before "and" was no subject
+            if not heads:
+                subject = []  # "juggles and walks": what comes before "and" was no subject
             before = Head("", "")
             continue
         verb = head_of(token, tokens[k + 1 : k + 2], heads, notes)
+        if verb and token in THINGS and tokens[max(k - 1, 0)] in ("a", "the"):
+            verb = ""  # "picks up a box"
+        if verb and heads and named_again(verb, heads[-1], tokens[:k]):
+            say_of(heads[-1], before)
+            before = Head("", "")
+            continue
         if verb:
-            participle = token.endswith("ing") and not joined
+            participle = token.endswith("ing") and joined != "and"
             head = Head(verb, token, "ing" if participle else joined)
             say_of(head, before)
             heads.append(head)
@@ -169,6 +219,11 @@ def acts_in(piece: str, notes: list[str]) -> Iterator[tuple[Head, Act]]:
             continue
         target = before if leads(tokens, k) or not heads else heads[-1]
         if take(target, token, tokens, k) or token in FILLERS or is_light(token):
+            continue
+        near = meant(token)
+        if near:
+            notes.append(f"{token!r} is read as {near!r}")
+            take(target, near, tokens, k)
             continue
         if not addressed(tokens, k, heads):
             unknown.append(token)
@@ -183,7 +238,31 @@ def acts_in(piece: str, notes: list[str]) -> Iterator[tuple[Head, Act]]:
         unknown = [word for word in unknown if word not in subject]
     if unknown:
         left = "not understood, and left out" if heads else "not understood"
-        notes.append(f"{left}: {', '.join(map(repr, dict.fromkeys(unknown)))}")
+        words = [repr(word.replace("-", " ")) for word in dict.fromkeys(unknown)]
+        notes.append(f"{left}: {', '.join(words)}")
+
+
+def meant(token: str) -> str:
+    """The word that a word about an act stands for, if it is misspelled; else ""."""
+    if len(token) < 4:
+        return ""
+    words = [
+        word for word in (*SIDES, *WAYS, *PACES, *NUMBERS, *LIMBS, "times", "down") if len(word) > 3
+    ]
+    swapped = [word for word in words if sorted(word) == sorted(token)]
+    near = swapped or get_close_matches(token, words, 1, 0.84)
+    return near[0] if near and near[0][0] == token[0] else ""
+
+
+def named_again(verb: str, last: Head, before: Sequence[str]) -> bool:
+    """Whether a word names the act of the last verb: "greets her with a wave", "goes two steps"."""
+    while before and before[-1] in (*SIDES, *PACES, *WAYS, "very"):
+        before = before[:-1]
+    if last.verb == verb == "walk":
+        return bool(before) and (
+            before[-1] in ("a", "one") or before[-1] in NUMBERS or before[-1].isdigit()
+        )
+    return last.verb == verb and tuple(before[-2:]) in (("with", "a"), ("in", "a"))
 
 
 def addressed(tokens: Sequence[str], k: int, heads: Sequence[Head]) -> bool:
@@ -301,8 +380,7 @@ def take(head: Head, token: str, tokens: Sequence[str], k: int) -> bool:
             head.side = "both" if NUMBERS.get(token) == 2 else head.side
         else:
             head.count = NUMBERS.get(token) or int(token)
-    elif token == "some-times":
-        head.count = 3
+            head.vague = token in VAGUE
     elif token in PACES:
         head.speed = PACES[token]
     elif token in WAYS:
@@ -319,7 +397,7 @@ def take(head: Head, token: str, tokens: Sequence[str], k: int) -> bool:
 def say_of(head: Head, more: Head) -> None:
     """Add what stands before a verb."""
     head.side = more.side or head.side
-    head.count = more.count or head.count
+    head.count, head.vague = (more.count, more.vague) if more.count else (head.count, head.vague)
     head.speed = more.speed or head.speed
     head.ways += more.ways
     head.limbs += more.limbs
@@ -361,7 +439,7 @@ def made(head: Head, notes: list[str]) -> Iterator[tuple[Head, Act]]:
             verb = "aside"
         elif "around" in ways and head.word.startswith(("turn", "fac")):
             verb = "turn"
-    if verb == "turn" and "back" in ways:
+    if verb == "turn" and "back" in ways and side not in ONE:
         ways.add("around")
     direction = ""
     if verb == "spin":
@@ -393,7 +471,11 @@ def made(head: Head, notes: list[str]) -> Iterator[tuple[Head, Act]]:
             yield head, Act(verb, one, 0, *said(kind, head, notes))
         return
     side = allowed_side(verb, kind, side, notes)
-    count = allowed_count(verb, kind, head.count, notes)
+    count = allowed_count(verb, kind, 0 if head.vague and kind.most == 1 else head.count, notes)
+    if kind.part == "spot" and ways & {"aside", "back"}:
+        notes.append(f"{verb!r} has no way to the side or back, and is done on the spot")
+    if kind.part != "arms" and "arm" in head.limbs and not held:
+        notes.append(f"not understood, and left out: the arms of {verb!r}")
     yield head, Act(verb, side, count, *said(kind, head, notes), direction)
     if held:
         yield Head("hold", "hold", "ing"), held
@@ -422,7 +504,9 @@ def allowed_side(verb: str, kind: Kind, side: str, notes: list[str]) -> str:
 
 def allowed_count(verb: str, kind: Kind, count: int, notes: list[str]) -> int:
     """The count, if the verb is counted, up to the most that were learnt."""
-    if count > kind.most and kind.part != "way":
+    if count > kind.most and kind.part == "way":
+        notes.append(f"{verb!r} is not counted: {count} is left out")
+    elif count > kind.most:
         most = f"{kind.most} times at most" if kind.most > 1 else "once"
         notes.append(f"{verb!r} is done {most}, not {count} times")
     return min(count, kind.most) if kind.most > 1 else 0
