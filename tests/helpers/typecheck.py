@@ -47,7 +47,9 @@ def now_and_then(jaxtyped: Callable) -> Callable:
 
 def _at_times(plain: Callable, checked_version: Callable[[], Callable]) -> Callable:
     """`plain`, checked in the first calls of a test and then now and then."""
-    full, checks, unchecked = None, 0, 0  # of this test; how many calls follow before the next check
+    full = None
+    checks = 0  # in this test
+    unchecked = 0  # so many calls follow before the next check
 
     def begin() -> None:
         nonlocal checks, unchecked
