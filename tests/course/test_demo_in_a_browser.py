@@ -51,7 +51,7 @@ def address(chromium, tmp_path: Path):
             wait_until_answering(f"http://127.0.0.1:{port}/api/status?token=test", server, log)
             yield f"http://127.0.0.1:{port}/doc/tree/notebooks/07_far.ipynb?token=test"
         finally:
-            # Asked to end while a kernel starts, Jupyter waits 15 s; without a server a kernel ends.
+            # Asked to end while a kernel starts, Jupyter waits 15 s. Kernels end without it.
             os.killpg(server.pid, signal.SIGKILL)
             server.wait(60)
 
