@@ -40,4 +40,4 @@ def run(args: argparse.Namespace) -> None:
 
     how = {"seconds": args.seconds, "guidance": args.guidance}
     made = load("mover").act(args.text, samples=args.samples, seed=args.seed, **how)
-    outputs.write_all(made, paths)
+    outputs.write_all(made, paths, args.fps)
