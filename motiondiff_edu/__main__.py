@@ -28,6 +28,7 @@ VERBS = {name: f"_commands.{name}" for name in _commands.VERBS} | {
     "doctor": "course.doctor",
     "collect": "course.collect",
     "handout": "course.handout",
+    "export": "course.export",
 }
 
 

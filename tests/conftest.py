@@ -108,7 +108,7 @@ def lab(lab_server, lab_folder, root, request):
 
 def pytest_runtest_setup() -> None:
     """In each test the first calls of a function are checked."""
-    typecheck.calls.clear()
+    typecheck.begin_test()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

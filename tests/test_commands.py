@@ -209,6 +209,7 @@ def test_a_place_that_cannot_be_written_is_refused_before_any_work(verb, place, 
         (["reconstruct", "my_walk.bvh", "--missing", "Tail", "--out", "x.bvh"], "called 'Tail'"),
         ([*writing("reconstruct", "x.bvh"), "--frames", "9-3"], "9 comes after 3"),
         ([*writing("convert", "x.bvh"), "--joints", "LeftArm"], "write JOINT=NAME"),
+        ([*writing("inbetween", "x.bvh"), "--at", "4,x"], "--at 4,x: 'x' is not a span"),
     ],
 )
 def test_other_arguments_are_checked_before_any_work(words, told, no_work, capsys):
@@ -299,6 +300,54 @@ def test_samples_go_to_numbered_files(folder, capsys):
     assert not np.array_equal(one.positions, two.positions)
     assert run(*words) == 1 and "made-1.npz exists already" in capsys.readouterr().err
     assert run(*words, "--overwrite") == 0
+
+
+def test_a_folder_is_taken_file_by_file_and_a_bad_one_costs_no_other(folder, capsys):
+    walks = folder / "walks"
+    walks.mkdir()
+    for name in ("one.bvh", "two.bvh"):
+        shutil.copy("my_walk.bvh", walks / name)
+    (walks / "broken.bvh").write_text("HIERARCHY")
+    (walks / "notes.txt").touch()
+    assert run("convert", "walks", "made", "--ending", "npz") == 1
+    said = capsys.readouterr().err
+    assert "left out: walks/broken.bvh: " in said and "1 of 3 files were left out" in said
+    assert sorted(path.name for path in (folder / "made").iterdir()) == ["one.npz", "two.npz"]
+    words = ["inbetween", "walks/one.bvh", "my_walk.bvh", "--at", "20-22,30", "--samples", "2"]
+    assert run(*words, "--frames", "5-44", "--ending", ".npz", "--out", "between") == 0
+    between = sorted((folder / "between").iterdir())
+    assert [path.stem for path in between] == ["my_walk-1", "my_walk-2", "one-1", "one-2"]
+    given = md.read_motion("my_walk.bvh")[5:45].positions
+    for path in between:
+        kept = (md.read_motion(path).positions == given).all((1, 2))
+        assert np.flatnonzero(kept).tolist() == [0, 20, 21, 22, 30, 39]
+    assert run("info", "walks") == 1 and "1 of 3 files cannot be read" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "words, told",
+    [
+        (["my_walk.bvh", "twice/my_walk.bvh", "made"], "two files would be written to my_walk.bvh"),
+        (["twice", "my_walk.bvh", "made.mp4"], "give its name, and --ending .mp4"),
+        (["empty", "made"], "empty: no file in this folder can be read as a motion"),
+        (["twice", "twice"], "is the file that is read"),
+        (["twice", "made", "--ending", "docx"], "unknown ending .docx"),
+    ],
+)
+def test_what_several_files_cannot_be_written_to_is_refused_before_any_work(
+    words, told, no_work, capsys
+):
+    (no_work / "empty").mkdir()
+    (no_work / "twice").mkdir()
+    shutil.copy("my_walk.bvh", no_work / "twice")
+    assert told in refused(["convert", *words], no_work, capsys)
+
+
+def test_a_file_is_written_at_the_rate_that_is_asked_for(folder):
+    assert run("convert", "my_walk.bvh", "fast.npz", "--fps", "60") == 0
+    given, fast = md.read_motion("my_walk.bvh"), md.read_motion("fast.npz")
+    assert fast.fps == 60 and len(fast) == 3 * (len(given) - 1) + 1
+    np.testing.assert_allclose(fast.positions[::3], given.positions, atol=1e-5)
 
 
 def test_missing_joints_are_found_from_the_command_line(folder, capsys):

@@ -28,7 +28,7 @@ def run(module: ModuleType, args: argparse.Namespace) -> int:
             warnings.simplefilter("default", UserWarning)
             warnings.showwarning = _as_a_note
             outputs.check_arguments(args)
-            return module.run(args) or 0
+            return _each(module, args) if "ending" in args else module.run(args) or 0
     except KeyboardInterrupt:
         print("\nstopped; no incomplete file is left", file=sys.stderr)
         return STOPPED
@@ -39,6 +39,22 @@ def run(module: ModuleType, args: argparse.Namespace) -> int:
             raise
         print(f"{args.verb}: {message(error)}", file=sys.stderr)
         return 1
+
+
+def _each(module: ModuleType, args: argparse.Namespace) -> int:
+    """Run a verb for each of its files; one that fails is told and costs no other its result."""
+    jobs, faulty = outputs.one_by_one(args), 0
+    for job in jobs:
+        try:
+            module.run(job)
+        except Exception as error:
+            if len(jobs) == 1 or not expected(error):
+                raise
+            outputs.say(f"left out: {job.file}: {message(error)}")
+            faulty += 1
+    if faulty:
+        raise ValueError(f"{faulty} of {len(jobs)} files were left out")
+    return 0
 
 
 def expected(error: Exception) -> bool:

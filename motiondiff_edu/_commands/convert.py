@@ -13,7 +13,11 @@ EXAMPLE = "convert my_walk.bvh my_walk.mp4"
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of `convert`."""
     outputs.add_file(parser)
-    parser.add_argument("out", type=Path, help=f"the file to write: {outputs.endings()}")
+    parser.add_argument(
+        "out",
+        type=Path,
+        help=f"the file to write: {outputs.endings()}; or a folder, for several files",
+    )
     parser.add_argument(
         "--joints",
         metavar="NAMES",
@@ -26,6 +30,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FPS",
         help="BVH: the frames a second, if the file is wrong",
     )
+    outputs.add_fps(parser)
     outputs.add_overwrite(parser)
 
 
@@ -33,7 +38,9 @@ def run(args: argparse.Namespace) -> None:
     """Write the motion in the other format."""
     mapping = _mapping(args.joints)
     paths = outputs.output_paths(args.out, args.overwrite, source=args.file)
-    outputs.write_all(outputs.read(args.file, args, mapping=mapping, file_fps=args.file_fps), paths)
+    outputs.write_all(
+        outputs.read(args.file, args, mapping=mapping, file_fps=args.file_fps), paths, args.fps
+    )
 
 
 def _mapping(names: str) -> dict[str, str] | None:

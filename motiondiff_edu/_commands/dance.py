@@ -41,4 +41,4 @@ def run(args: argparse.Namespace) -> None:
 
     draws = {"samples": args.samples, "seed": args.seed, "guidance": args.guidance}
     made = load("dancer").dance(args.song, seconds=args.seconds, **draws)
-    outputs.write_all(made, paths)
+    outputs.write_all(made, paths, args.fps)

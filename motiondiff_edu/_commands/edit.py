@@ -12,7 +12,7 @@ EXAMPLE = 'edit my_walk.bvh "walks forward while clapping" --keep "lower body" -
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of `edit`."""
-    outputs.add_file(parser, "a motion of 2 to 10 s")
+    outputs.add_file(parser, "a motion of 2 to 10 s", count=1)
     parser.add_argument("text", help="the sentence, in quotes")
     parser.add_argument(
         "--keep",
@@ -43,4 +43,4 @@ def run(args: argparse.Namespace) -> None:
     motion = outputs.read(args.file, args)
     known = body_part(len(motion), part) if part else None
     how = {"strength": args.strength, "samples": args.samples, "seed": args.seed}
-    outputs.write_all(edit(motion, args.text, known, **how), paths)
+    outputs.write_all(edit(motion, args.text, known, **how), paths, args.fps)

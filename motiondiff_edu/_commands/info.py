@@ -12,17 +12,17 @@ EXAMPLE = "info my_walk.bvh"
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of `info`."""
-    outputs.add_file(parser, "motions", several=True)
+    outputs.add_file(parser, "motions", together=True)
 
 
 def run(args: argparse.Namespace) -> None:
     """Describe every file that can be read; then raise ValueError if there was another."""
-    faulty = 0
-    for path in args.file:
+    paths, faulty = outputs.files(args.file), 0
+    for path in paths:
         try:
             motion = outputs.read(path, args)
         except (ValueError, OSError) as error:
-            if len(args.file) == 1:
+            if len(paths) == 1:
                 raise
             faulty += 1
             outputs.say(f"  {error}")
@@ -31,7 +31,7 @@ def run(args: argparse.Namespace) -> None:
         for line in [*lines_of(motion), *joints_of(path)]:
             print(f"  {line}")
     if faulty:
-        raise ValueError(f"{faulty} of {len(args.file)} files cannot be read")
+        raise ValueError(f"{faulty} of {len(paths)} files cannot be read")
 
 
 def lines_of(motion) -> list[str]:

@@ -28,6 +28,7 @@ from ..motion.arguments import (
 CHECKS: dict[str, Callable[[Any], object]] = {
     "every": partial(checked_count, name="--every"),
     "file_fps": partial(checked_rate, name="--file-fps"),
+    "fps": partial(checked_rate, name="--fps"),
     "guidance": checked_guidance,
     "samples": partial(checked_samples, name="--samples"),
     "seconds": checked_seconds,
@@ -42,11 +43,26 @@ def endings() -> str:
 
 
 def add_out(parser: argparse.ArgumentParser) -> None:
-    """Add --out and --overwrite."""
+    """Add --out, --fps and --overwrite."""
     parser.add_argument(
-        "--out", required=True, type=Path, metavar="FILE", help=f"the file to write: {endings()}"
+        "--out",
+        required=True,
+        type=Path,
+        metavar="FILE",
+        help=f"the file to write: {endings()}; or a folder, for several files that are read",
     )
+    add_fps(parser)
     add_overwrite(parser)
+
+
+def add_fps(parser: argparse.ArgumentParser) -> None:
+    """Add --fps."""
+    parser.add_argument(
+        "--fps",
+        type=float,
+        help="the frames a second of the file that is written (default: 20, as the networks have "
+        "it; between those they are interpolated)",
+    )
 
 
 def add_overwrite(parser: argparse.ArgumentParser) -> None:
@@ -115,15 +131,25 @@ def check_arguments(args: argparse.Namespace) -> None:
 
 
 def add_file(
-    parser: argparse.ArgumentParser, what: str = "a motion", several=False, frames=True
+    parser: argparse.ArgumentParser, what: str = "a motion", together=False, frames=True, count="+"
 ) -> None:
-    """Add the file to read (or several), --up, --unit and, for a part of it, --frames."""
+    """Add the files to read, --up, --unit and, for a part of each, --frames.
+
+    They are worked on one by one, each for its own output, if they are not taken `together`.
+    """
     parser.add_argument(
         "file",
         type=Path,
-        nargs="+" if several else None,
-        help=f"{what}: .bvh, .npz, .npy or .pkl",
+        nargs=count,
+        help=f"{what}: .bvh, .npz, .npy or .pkl; a folder stands for those in it",
     )
+    if not together:
+        parser.add_argument(
+            "--ending",
+            default=".bvh",
+            help="how the names end in the folder that is written, for several files (default: "
+            ".bvh)",
+        )
     parser.add_argument(
         "--up",
         default="",
@@ -141,6 +167,54 @@ def add_file(
             metavar="A-B",
             help="only frames A to B, both included, at 20 frames a second (default: all)",
         )
+
+
+def files(given: Sequence[Path]) -> list[Path]:
+    """These files, and in place of a folder those in it that can be read as motions, by name.
+
+    Raises ValueError for a folder without any.
+    """
+    found = []
+    for path in given:
+        if not path.expanduser().is_dir():
+            found.append(path)
+            continue
+        inside = sorted(path.expanduser().iterdir())
+        motions = [one for one in inside if one.suffix.lower() in registry.readers.names()]
+        if not motions:
+            raise ValueError(f"{path}: no file in this folder can be read as a motion")
+        found += motions
+    return found
+
+
+def one_by_one(args: argparse.Namespace) -> list[argparse.Namespace]:
+    """The arguments for each of the files that are read, with the file that it is written to.
+
+    One file is written to --out; for several, or those of a folder, --out is a folder.
+    Raises ValueError as `output_paths` does, before anything is read.
+    """
+    given, out = files(args.file), args.out.expanduser()
+    alone = len(args.file) == 1 and given == args.file
+    if not alone and out.suffix.lower() in registry.writers.names():
+        raise ValueError(
+            f"{out}: several files go into a folder; give its name, and --ending {out.suffix}"
+        )
+    ending = "." + args.ending.lower().removeprefix(".")
+    jobs = [
+        argparse.Namespace(
+            **vars(args) | {"file": path, "out": out if alone else out / f"{path.stem}{ending}"}
+        )
+        for path in given
+    ]
+    paths = [
+        path
+        for job in jobs
+        for path in output_paths(job.out, job.overwrite, getattr(job, "samples", 1), job.file)
+    ]
+    twice = [path.name for path in paths if paths.count(path) > 1]
+    if twice:
+        raise ValueError(f"two files would be written to {twice[0]}: give one of them another name")
+    return jobs
 
 
 def read(
@@ -170,7 +244,7 @@ def read(
     return motion[first:end]
 
 
-def spans(words: str | None) -> list[tuple[int, int | None]]:
+def spans(words: str | None, option: str = "--frames") -> list[tuple[int, int | None]]:
     """(first, last + 1) of each span in "40-80,100-120", or of all frames.  Raises ValueError."""
     if words is None:
         return [(0, None)]
@@ -179,10 +253,10 @@ def spans(words: str | None) -> list[tuple[int, int | None]]:
         match = re.fullmatch(r"\s*(\d+)\s*(?:-\s*(\d+)\s*)?", piece, re.ASCII)
         if not match:
             what = f"{piece!r} is not a span of frames such as 20-39, nor a single frame"
-            raise ValueError(f"--frames {words}: {what}")
+            raise ValueError(f"{option} {words}: {what}")
         first, last = int(match[1]), int(match[2] or match[1])
         if first > last:
-            raise ValueError(f"--frames {words}: {first} comes after {last}")
+            raise ValueError(f"{option} {words}: {first} comes after {last}")
         found.append((first, last + 1))
     return found
 
@@ -192,9 +266,11 @@ def as_list(made: object) -> list:
     return made if isinstance(made, list) else [made]
 
 
-def write_all(made: object, paths: Sequence[Path]) -> None:
-    """Write each motion to its file, and print what was written."""
+def write_all(made: object, paths: Sequence[Path], fps: float | None = None) -> None:
+    """Write each motion to its file, at `fps` if that is given, and print what was written."""
     for motion, path in zip(as_list(made), paths, strict=True):
+        if fps is not None:
+            motion = motion.resampled(fps)
         motion.save(path, overwrite=True)  # `output_paths` has checked the names
         print(f"{path}: {motion.seconds:.1f} s, {len(motion)} frame{'s' * (len(motion) > 1)}")
 

@@ -13,7 +13,7 @@ EXAMPLE = "play my_walk.bvh more.bvh"
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of `play`."""
-    outputs.add_file(parser, "motions", several=True)
+    outputs.add_file(parser, "motions", together=True)
     parser.add_argument("--out", type=Path, metavar="PAGE.html", help="where to save the page")
     parser.add_argument("--no-open", action="store_true", help="do not open the browser")
     outputs.add_overwrite(parser)
@@ -25,9 +25,10 @@ def run(args: argparse.Namespace) -> None:
         if args.out.suffix.lower() != ".html":
             raise ValueError(f"--out {args.out}: the page's name must end in .html")
         (args.out,) = outputs.output_paths(args.out, args.overwrite)
-    for path in args.file:
+    paths = outputs.files(args.file)
+    for path in paths:
         check_there(path)
-    motions = [outputs.read(path, args) for path in args.file]
+    motions = [outputs.read(path, args) for path in paths]
     from .. import play
 
     play(motions, path=args.out, open_page=not args.no_open)

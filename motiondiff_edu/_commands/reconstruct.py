@@ -56,4 +56,6 @@ def run(args: argparse.Namespace) -> None:
     if known.all():
         raise ValueError(f"{args.file} lacks no joint: name some, such as --missing LeftHand")
     outputs.say(f"reconstructing {int((~known).sum())} joint positions")
-    outputs.write_all(reconstruct(motion, known, samples=args.samples, seed=args.seed), paths)
+    outputs.write_all(
+        reconstruct(motion, known, samples=args.samples, seed=args.seed), paths, args.fps
+    )

@@ -35,4 +35,4 @@ def run(args: argparse.Namespace) -> None:
     if args.joined:
         before = motion.resampled(made[0].fps)
         made = [before.then(more) for more in made]
-    outputs.write_all(made, paths)
+    outputs.write_all(made, paths, args.fps)

@@ -382,10 +382,10 @@ def as_csv(rows: list[dict]) -> str:
     fields = ("student", "notebook", "exercise", "result", "message")
     writer = csv.DictWriter(text, fields, lineterminator="\n")
     writer.writeheader()
-    writer.writerows({name: _no_formula(row[name]) for name in fields} for row in rows)
+    writer.writerows({name: no_formula(row[name]) for name in fields} for row in rows)
     return text.getvalue()
 
 
-def _no_formula(text: str) -> str:
+def no_formula(text: str) -> str:
     """The text; with a quote before it where a spreadsheet would calculate it."""
     return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r")) else text

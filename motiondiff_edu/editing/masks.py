@@ -62,16 +62,26 @@ def keyframes(T: int, every: int) -> Bool[np.ndarray, "{T} J"]:
     return known_frames(T, sorted({*range(0, T, every), T - 1}))
 
 
-def keyframes_of(motion: Motion | int, every: int = 20) -> Bool[np.ndarray, "T J"]:
-    """The mask for a keyframe every `every` frames and at the last one: True where it is given.
+def keyframes_of(
+    motion: Motion | int, every: int = 20, at: Sequence[int] | None = None
+) -> Bool[np.ndarray, "T J"]:
+    """The mask for a keyframe every `every` frames, or at the frames `at`: True where it is given.
 
-    Pass a motion, or its number of frames. Joints that a motion lacks (NaN) are not given. A frame
-    without the pelvis is not given at all, and the nearest that has one takes its place: every=1
-    asks for the lost frames alone.
-    Raises ValueError for every < 1, or no frames, TypeError for anything but a motion or a number.
+    The first and the last frame are keyframes, too. Pass a motion, or its number of frames. Joints
+    that a motion lacks (NaN) are not given. A frame without the pelvis is not given at all, and the
+    nearest that has one takes its place: every=1 asks for the lost frames alone.
+    Raises ValueError for every < 1, no frames, or a frame outside the motion, TypeError for
+    anything but a motion or a number.
     """
     T = int(motion) if isinstance(motion, Integral) else len(as_motion(motion))
-    made = keyframes(checked_count(T, "a motion's number of frames"), checked_count(every, "every"))
+    checked_count(T, "a motion's number of frames")
+    if at is None:
+        made = keyframes(T, checked_count(every, "every"))
+    else:
+        for frame in at:
+            if not isinstance(frame, Integral) or not 0 <= frame < T:
+                raise ValueError(f"a keyframe at {frame!r:.40}: the motion has frames 0 to {T - 1}")
+        made = known_frames(T, sorted({0, *map(int, at), T - 1}))
     if not isinstance(motion, Motion) or motion.skeleton != COURSE:
         return made
     there, wanted = np.flatnonzero(motion.known[:, HIPS]), np.flatnonzero(made.any(1))

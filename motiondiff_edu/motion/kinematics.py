@@ -3,10 +3,10 @@
 Source: textbook rigid-body kinematics; MoDiff itself works on positions (IV-A).  Notebook: 01
 """
 
+from functools import reduce
 from itertools import pairwise
 
 import numpy as np
-import scipy
 from jaxtyping import Float, Int
 
 
@@ -50,10 +50,8 @@ def euler_to_matrix(angles: Float[np.ndarray, "*N K"], order: str) -> Float[np.n
         raise ValueError(
             f"rotation order {order!r} does not fit {angles.shape[-1]} angles; use letters X, Y, Z"
         )
-    turns = scipy.spatial.transform.Rotation.from_euler(
-        order, angles.reshape(-1, len(order))
-    )  # capitals: intrinsic
-    return turns.as_matrix().reshape(*angles.shape[:-1], 3, 3)
+    about = {"X": rot_x, "Y": rot_y, "Z": rot_z}  # scipy's from_euler takes ten times as long
+    return reduce(np.matmul, (about[axis](angles[..., k]) for k, axis in enumerate(order)))
 
 
 def forward_kinematics(

@@ -2,7 +2,14 @@
 
 import pytest
 
-from motiondiff_edu.editing.masks import body_part, gap, keyframes, known_frames, seed
+from motiondiff_edu.editing.masks import (
+    body_part,
+    gap,
+    keyframes,
+    keyframes_of,
+    known_frames,
+    seed,
+)
 
 
 def test_masks():
@@ -16,6 +23,14 @@ def test_masks():
     assert (~gap(100, 20, 15).any(-1)).nonzero()[0].tolist() == list(range(20, 35))
     both = body_part(5, "upper body").sum() + body_part(5, "lower body").sum()
     assert both == 5 * (21 + 1) and body_part(5, "trajectory").sum() == 5  # the pelvis is in each
+
+
+def test_keyframes_are_where_they_are_asked_for():
+    assert keyframes_of(50, at=[30, 7, 30]).any(-1).nonzero()[0].tolist() == [0, 7, 30, 49]
+    assert keyframes_of(50, at=[]).any(-1).nonzero()[0].tolist() == [0, 49]
+    for wrong in (50, -1, 3.5):
+        with pytest.raises(ValueError, match=f"keyframe at {wrong}: .* 0 to 49"):
+            keyframes_of(50, at=[4, wrong])
 
 
 def test_masks_refuse_what_is_not_there():

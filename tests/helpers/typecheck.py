@@ -7,7 +7,6 @@ the calls. So in each test a function is checked in its first calls, and then no
 """
 
 import functools
-from collections import Counter
 from collections.abc import Callable
 from dataclasses import is_dataclass
 from types import FunctionType
@@ -16,10 +15,10 @@ from beartype import BeartypeConf, beartype
 
 checked = beartype(conf=BeartypeConf(is_pep484_tower=True))
 
-FIRST = 10  # calls of a function in a test that are all checked
-EVERY = 50  # after them, one of so many
+FIRST = 2  # calls of a function in a test that are all checked
+EVERY = 200  # after them, one of so many
 
-calls: Counter[Callable] = Counter()  # of this test
+called_in_test: list[Callable[[], None]] = []  # of each function, what begins its count again
 
 
 def now_and_then(jaxtyped: Callable) -> Callable:
@@ -33,6 +32,8 @@ def now_and_then(jaxtyped: Callable) -> Callable:
         if one is None:
             return functools.partial(decorated, typechecker=typechecker)
         if isinstance(one, FunctionType):
+            if not one.__annotations__:
+                return one
             return _at_times(one, lambda: jaxtyped(one, typechecker=typechecker))
         plain = getattr(one, "__init__", None)
         typed = jaxtyped(one, typechecker=typechecker)
@@ -47,14 +48,30 @@ def now_and_then(jaxtyped: Callable) -> Callable:
 def _at_times(plain: Callable, checked_version: Callable[[], Callable]) -> Callable:
     """`plain`, checked in the first calls of a test and then now and then."""
     full = None
+    checks = 0  # in this test
+    unchecked = 0  # so many calls follow before the next check
+
+    def begin() -> None:
+        nonlocal checks, unchecked
+        checks = unchecked = 0
 
     @functools.wraps(plain)
     def called(*args, **kwargs):
-        nonlocal full
-        calls[called] += 1
-        if calls[called] > FIRST and calls[called] % EVERY:
+        nonlocal full, checks, unchecked
+        if unchecked:  # all that most calls cost
+            unchecked -= 1
             return plain(*args, **kwargs)
+        if not checks:
+            called_in_test.append(begin)
+        checks += 1
+        unchecked = 0 if checks < FIRST else EVERY - 1
         full = full or checked_version()
         return full(*args, **kwargs)
 
     return called
+
+
+def begin_test() -> None:
+    """From here on the first calls of a function are checked again."""
+    while called_in_test:
+        called_in_test.pop()()

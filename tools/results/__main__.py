@@ -8,7 +8,7 @@ walker-departures (from MoDiff to our walker), dancer-departures and words-budge
 variant of a sweep is a part as well: walker-departures.leap, dancer-departures.ear. Otherwise
 their records stay as they are. A training that was killed continues. By name alone are measured:
 what needs recordings, with MOTIONDIFF_REAL_DATA (recordings, recordings-inbetweens,
-recordings-reconstructions, real-music, eye-recordings, inbetween-budget, gate), and
+recordings-reconstructions, real-music, eye-recordings, inbetween-budget, gate, files), collect, and
 course-shown (pages and demos, after `make pages`). --quick measures little, into build/quick, and
 is for trying the code. --render only writes the pages from the existing records.
 """
@@ -32,7 +32,8 @@ from motiondiff_edu.performers.inbetweener import Inbetweener
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.viz.walks import footstep_curves
 
-from . import eyes, gate
+from . import eyes, files, gate
+from .course.bad_copies import collect_records
 from .course.exercises import course_records
 from .course.shown import shown_records
 from .dances import departures as dance_departures
@@ -174,6 +175,8 @@ PARTS = {
         *c.performer("dancer"), c.of(real_music.FULL, real_music.QUICK), command), "dancer",
         by_name=True),
     "gate": part(lambda c, command: gate.gate_records(command, c.quick), by_name=True),
+    "files": part(lambda c, command: files.file_records(command, c.quick), by_name=True),
+    "collect": part(lambda c, command: collect_records(command, c.quick), by_name=True),
     "course-shown": part(lambda c, command: shown_records(command), by_name=True),
 }  # fmt: skip
 

@@ -1,15 +1,27 @@
 """Kinds of bad copies of notebook 02, beside right ones, for `motiondiff-edu collect`.
 
+collect.survives    the share of kinds of bad copies after which a right copy is called right
+
 hand_in(folder)                     two students for each kind: a bad copy, then a right one
-share_of_survivors(rows)            of the rows of the CSV file
+collected(folder, out, ...)         what the command prints, and the rows of its CSV file
+survivors(rows)                     after which kinds the right copy is right
 """
 
+import csv
 import json
 import os
 import socket
+import subprocess
 import sys
+import tempfile
 from collections.abc import Callable, Iterable
 from pathlib import Path
+
+import numpy as np
+
+from motiondiff_edu.course.collect import name_of, no_formula
+
+from ..walks.scores import measure_of
 
 NAME = "02_noise.ipynb"
 EXERCISE = "constant_beta"
@@ -198,8 +210,8 @@ FAKES: dict[str, Callable[[Path], None]] = {
     "writes_to_its_parent": first(TO_PARENT),
 }  # fmt: skip
 KINDS = FILES | ENDINGS | FAKES
-# of what ends or fakes an answer, the tests have these; a measurement has all of them, and those
-# that run into a limit (`tools.results --only collect`)
+# of what ends or fakes an answer, the tests have these; `tools.results --only collect` has all of
+# them, and those that run into a limit
 TESTED = (
     "exit_0", "exit_3", "system_exit", "kills_itself", "crash", "kills_its_parent", "alarm_off",
     "new_session", "long_message", "odd_message", "formula", "removes_its_folder",
@@ -224,6 +236,11 @@ def student(kind: str) -> str:
     return NAMES.get(kind, kind)
 
 
+def shown(folder: str) -> str:
+    """The name of a folder in the table."""
+    return no_formula(name_of(folder))
+
+
 def hand_in(
     class_folder: Path,
     kinds: Iterable[str] = tuple(KINDS),
@@ -245,10 +262,39 @@ def results(rows: list[dict]) -> dict[str, tuple[str, str]]:
     return {row["student"]: (row["result"], row["message"]) for row in mine}
 
 
-def share_of_survivors(
-    rows: list[dict], shown: Callable[[str], str], kinds: Iterable[str] = tuple(KINDS)
-) -> float:
-    """The share of kinds after which the right copy is right; `shown` turns a folder into a row."""
+def survivors(rows: list[dict], kinds: Iterable[str] = tuple(KINDS)) -> dict[str, bool]:
+    """Of each kind, whether the right copy after it is called right."""
     found = results(rows)
-    kept = [found.get(shown(student(kind) + BESIDE), ("",))[0] == "right" for kind in kinds]
-    return sum(kept) / len(kept)
+    return {k: found.get(shown(student(k) + BESIDE), ("",))[0] == "right" for k in kinds}
+
+
+def collected(folder: Path, out: Path) -> tuple[str, list[dict]]:
+    """What `motiondiff-edu collect` prints of these copies, and the rows of its file.
+
+    Raises RuntimeError where it fails. The copies are removed.
+    """
+    limits = ["--seconds", str(SECONDS), "--gigabytes", "1"]
+    done = subprocess.run(
+        [sys.executable, "-m", "motiondiff_edu", "collect", folder, "--out", out, *limits],
+        capture_output=True,
+        text=True,
+    )
+    subprocess.run(["rm", "-rf", folder])  # Python cannot remove folders that lie so deep
+    if done.returncode:
+        raise RuntimeError(done.stderr)
+    with out.open(newline="") as file:
+        return done.stdout, list(csv.DictReader(file))
+
+
+def collect_records(command: str, quick: bool) -> list[dict]:
+    """All records."""
+    kinds = QUICK if quick else tuple(KINDS)
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place) / "handed_in"
+        hand_in(folder, kinds)
+        _, rows = collected(folder, Path(place) / "class.csv")
+    kept = survivors(rows, kinds)
+    for kind in (kind for kind, right in kept.items() if not right):
+        print(f"the right copy beside this one is not right: {kind}")
+    share = measure_of("survives", "share", np.mean, np.array(list(kept.values()), float))
+    return [share.as_record("collect.", {"kinds": len(kinds)}, command)]
