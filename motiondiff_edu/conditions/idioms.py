@@ -7,6 +7,7 @@ Notebook: 16
 
 import re
 
+from .acts import ONE
 from .text import PASSED_OVER
 
 OWN = r"(?:(?:both|the|his|her|their|your|my|its|one's|a|one|two) )*"  # before a part of the body
@@ -17,7 +18,8 @@ REWRITTEN = tuple(
         (r"\b(but|and) (first|before (that|this|it))\b,?", " before-it "),
         (r"\bbefore (that|this|it)\b,?", " before-it "),
         (
-            r"\b(show|give) (me|us)\b|\blet('s| us)( see)?\b|\bi (want|would like|'d like)( to see)?\b",
+            r"\b(show|give) (me|us)\b|\blet('s| us)( see)?\b|"
+            r"\bi (want|would like|'d like)( to see)?\b",
             " ",
         ),
         (r"\bthe (first|last|next) thing( that)? (he|she|it|they) (does?|do) is( to)?\b", " | "),
@@ -156,14 +158,16 @@ LIGHT = frozenset(
 SIDES = {"left": "left", "right": "right", "both": "both", "two-handed": "both", "either": ""}
 NUMBERS = {
     "once": 1, "one": 1, "single": 1, "twice": 2, "two": 2, "thrice": 3, "three": 3, "four": 4,
-    "few": 3, "several": 3, "some-times": 3, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9, "ten": 10, "dozen": 12,
+    "few": 3, "several": 3, "some-times": 3, "five": 5, "six": 6,
+    "seven": 7, "eight": 8, "nine": 9, "ten": 10, "dozen": 12,
 }  # fmt: skip
 PACES = {
     **dict.fromkeys(
         "slowly slow gently gentle leisurely calmly lazily unhurried carefully".split(), "slowly"
     ),
     **dict.fromkeys(
-        "quickly quick fast rapidly rapid briskly brisk hastily swiftly swift speedily hurriedly frantically furiously".split(),
+        "quickly quick fast rapidly rapid briskly brisk hastily swiftly swift speedily hurriedly"
+        " frantically furiously".split(),
         "quickly",
     ),
 }
@@ -182,8 +186,8 @@ FILLERS = PASSED_OVER | frozenset(
     "and or with without to in out over again also along down low deep deeply place pace time times"
     " chair stool seat air shoulder body person man woman figure people child politely hard happily"
     " proudly casually lightly softly nicely bit motion movement spot floor ground own way himself"
-    " herself itself themselves still same then more please pls thanks thx let make together ok okay so um uh"
-    " hmm well maybe away off over excitedly enthusiastically cheerfully joyfully".split()
+    " herself itself themselves still same then more please pls thanks thx let make together ok"
+    " okay so um uh hmm well maybe away off over excitedly enthusiastically cheerfully joyfully".split()
 )
 # counts that are not meant exactly: steps of a walk are not counted
 VAGUE = frozenset("few several some-times".split())
@@ -193,3 +197,40 @@ THINGS = frozenset("box face point show stand".split())
 TOWARDS = ("to", "at", "for")
 WHOSE = frozenset("a an the his her their my your its our all some".split())
 ADDRESSED = frozenset("wave bow clap point raise".split())
+
+
+def rewritten(text: str) -> str:
+    """The text in small letters, with | between acts in a row and & between acts at once."""
+    low = re.sub(r"[’`]", "'", text.lower())
+    low = re.sub(r"[.;!?:\n]+", " | ", low)
+    for pattern, other in REWRITTEN:
+        low = " ".join(pattern.sub(other, low).split())
+    return other_side(in_their_order(low))
+
+
+def in_their_order(low: str) -> str:
+    """Acts in the order in which they are done: "X after Y", "before X, Y", "X, but first Y"."""
+    for word, first in ((r"\bafter\b", 1), (r"(?:[|,]|\bbut\b|\band\b)* ?\bbefore-it\b,?", 1)):
+        pieces = re.split(word, low)
+        if len(pieces) == 2 and pieces[0].strip(" |,"):
+            low = f"{pieces[first]} | {pieces[1 - first]}"
+        elif len(pieces) == 2:
+            low = pieces[1].replace(",", " | ", 1)
+    match = re.match(r"[ |,]*before\b([^,|]*),(.*)", low)
+    low = f"{match[2]} | {match[1]}" if match else low
+    return re.sub(r"\bbefore\b", " | ", low)
+
+
+def other_side(low: str) -> str:
+    """With "left" or "right" in place of "the other hand"."""
+    last, words = "", low.split()
+    for k, word in enumerate(words):
+        last = word if word in ONE else last
+        if (
+            word == "other"
+            and last
+            and words[k + 1 : k + 2]
+            and words[k + 1] in {*LIMBS, "side", "one"}
+        ):
+            words[k] = last = ONE[1 - ONE.index(last)]
+    return " ".join(words)
