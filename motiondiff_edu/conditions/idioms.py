@@ -187,7 +187,8 @@ FILLERS = PASSED_OVER | frozenset(
     " chair stool seat air shoulder body person man woman figure people child politely hard happily"
     " proudly casually lightly softly nicely bit motion movement spot floor ground own way himself"
     " herself itself themselves still same then more please pls thanks thx let make together ok"
-    " okay so um uh hmm well maybe away off over excitedly enthusiastically cheerfully joyfully".split()
+    " okay so um uh hmm well maybe away off over excitedly"
+    " enthusiastically cheerfully joyfully".split()
 )
 # counts that are not meant exactly: steps of a walk are not counted
 VAGUE = frozenset("few several some-times".split())
