@@ -95,6 +95,17 @@ def in_words(parts: Parts) -> str:
     return ", then ".join(part_in_words(part) for part in parts)
 
 
+def apart(parts: Parts) -> tuple[str, ...]:
+    """What legs and arms do, each in words of its own, where all that is asked is one pair at once.
+
+    Else nothing. For a pair that no caption of the training had, the two are easier to plan.
+    """
+    if len(parts) != 1 or len(parts[0]) != 2:
+        return ()
+    arms, legs = sorted(parts[0], key=lambda act: KINDS[act.verb].part != "arms")
+    return act_in_words(legs, 0), act_in_words(arms, 0)
+
+
 def part_in_words(part: Sequence[Act]) -> str:
     """What happens at one time."""
     first, *others = part

@@ -95,6 +95,9 @@ def acts_of(head: Head, notes: list[str]) -> Iterator[tuple[Head, Act]]:
             verb = "aside"
         elif "around" in ways and head.word.startswith(("turn", "fac")):
             verb = "turn"
+    if head.word.startswith("fac") and side not in ONE and not ways & {"around", "back"}:
+        notes.append(f"not understood, and left out: {head.word!r}")
+        return
     if verb == "turn" and "back" in ways and side not in ONE:
         ways.add("around")
     direction = ""
@@ -106,8 +109,6 @@ def acts_of(head: Head, notes: list[str]) -> Iterator[tuple[Head, Act]]:
         direction = "forward"
     if verb == "point":
         direction = "aside" if "aside" in ways else "forward"
-    if verb in ("raise", "hold") and "leg" in head.limbs and "arm" not in head.limbs:
-        notes.append("the figure raises arms, no legs")
     if verb == "hold":
         if "up" not in ways and "arm" in head.limbs and ("forward" in ways or "aside" in ways):
             verb, direction = "point", "aside" if "aside" in ways else "forward"
@@ -130,6 +131,8 @@ def acts_of(head: Head, notes: list[str]) -> Iterator[tuple[Head, Act]]:
     count = allowed_count(verb, kind, 0 if head.vague and kind.most == 1 else head.count, notes)
     if kind.part == "spot" and ways & {"aside", "back"}:
         notes.append(f"{verb!r} has no way to the side or back, and is done on the spot")
+    if kind.part == "arms" and "leg" in head.limbs and "arm" not in head.limbs:
+        notes.append(f"{head.word!r} is done with the hands: the feet are left out")
     if kind.part != "arms" and "arm" in head.limbs and not held:
         notes.append(f"not understood, and left out: the arms of {verb!r}")
     yield head, Act(verb, side, count, *said(kind, head, notes), direction)

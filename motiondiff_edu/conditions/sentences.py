@@ -159,6 +159,8 @@ def acts_in(piece: str, notes: list[str]) -> Iterator[tuple[Head, Act]]:
         if verb:
             participle = token.endswith("ing") and joined != "and"
             head = Head(verb, token, "ing" if participle else joined)
+            if plural(tokens, k):
+                head.count, head.vague = 2, True
             say_of(head, before)
             heads.append(head)
             before, joined = Head("", ""), ""
@@ -173,7 +175,7 @@ def acts_in(piece: str, notes: list[str]) -> Iterator[tuple[Head, Act]]:
             continue
         if not addressed(tokens, k, heads):
             unknown.append(token)
-            who = not heads and not token.endswith("ing")
+            who = not heads and not token.endswith("ing") and token != "i-mean"
             subject += [token] if who else []
     give_back(before, heads)
     if not heads and before.limbs and "up" in before.ways:  # "arms up"
@@ -186,6 +188,14 @@ def acts_in(piece: str, notes: list[str]) -> Iterator[tuple[Head, Act]]:
         left = "not understood, and left out" if heads else "not understood"
         words = [repr(word.replace("-", " ")) for word in dict.fromkeys(unknown)]
         notes.append(f"{left}: {', '.join(words)}")
+
+
+def plural(tokens: Sequence[str], k: int) -> bool:
+    """Whether a verb is a noun in the plural: "does squats", "throws quick punches"."""
+    before = list(tokens[:k])
+    while before and before[-1] in (*SIDES, *PACES, "some"):
+        before.pop()
+    return tokens[k].endswith("s") and bool(before) and is_light(before[-1])
 
 
 def named_again(verb: str, last: Head, before: Sequence[str]) -> bool:

@@ -44,6 +44,7 @@ def edit_by_words(
     *,
     strength: float = STRENGTH,
     samples: int = 1,
+    pair: tuple[str, ...] = (),
     generator: Generators | None = None,
     watch: Watch = iter,
 ) -> Float[np.ndarray, "samples T 21 3"]:
@@ -53,6 +54,7 @@ def edit_by_words(
               pelvis is known in a frame and the next, the root keeps its velocity, too. Default:
               nothing is masked
     strength  above 0, up to 1; with 1 nothing but the known part is left of the motion
+    pair      a text for the legs and one for the arms, whose timelines are made on their own
     watch     gets each sampling loop, and shows how far it is
     Without a `generator` the seed is 0. The first frame stays where it was, facing the same way.
     While the pelvis is known from the first frame on, known joints come back bit by bit.
@@ -67,7 +69,7 @@ def edit_by_words(
     # those of DDIM up to this share of S; the last one at least
     share = checked_strength(strength) * mover.schedule.S
     ways = [s for s in every if s <= round(share)] or every[-1:]
-    texts = mover.reader.encoded([mover.reader.read(text).words] * samples)
+    ids = mover.reader.encoded([mover.reader.read(text).words] * samples)
     generator = generator or torch.Generator().manual_seed(0)
     size = leg_size(positions)  # the mover knows figures of the course's size
     given, schedule = mover.units_of(positions / size).expand(samples, -1, -1), mover.schedule
@@ -75,8 +77,14 @@ def edit_by_words(
     start = q_sample(given, ways[0], schedule, draw(given, generator))
     plan = None
     if mover.can_plan:
-        plan = _plan(mover, positions / size, mask, texts, generator, watch)
-    denoise = mover.denoiser(texts, len(positions), plan=plan)
+        legs = timeline.of_the_legs()
+        owns = (legs, ~legs) if pair else (torch.ones_like(legs),)
+        plans = [
+            _plan(mover, positions / size, kept_columns(mask) & own, one, generator, watch)
+            for one, own in zip(mover.planned_from(ids, pair), owns, strict=True)
+        ]
+        plan = timeline.joined(plans)
+    denoise = mover.denoiser(ids, len(positions), plan=plan)
     if held.any():
         denoise = blended(denoise, schedule, given, held, fade=FADE)
     loop = inpaint_steps(
@@ -91,13 +99,13 @@ def edit_by_words(
 def _plan(
     mover: Mover,
     positions: Float[np.ndarray, "T 21 3"],
-    known: Bool[np.ndarray, "T 21"],
+    held: Bool[Tensor, "T 24"],
     texts: Texts,
     generator: Generators,
     watch: Watch = iter,
 ) -> Float[Tensor, "samples T 24"]:
-    """Timelines for the texts that go with what is known of the motion."""
-    seen, held = torch.from_numpy(recognised_timeline(positions)).float(), kept_columns(known)
+    """Timelines for the texts that go with what is known of the motion (in columns `held`)."""
+    seen = torch.from_numpy(recognised_timeline(positions)).float()
     given = mover.plan_scaler.transform(seen.to(mover.device)).expand(len(texts), -1, -1)
     held = held.to(mover.device).expand_as(given)
     loop = inpaint_steps(

@@ -15,7 +15,7 @@ from torch import Tensor
 
 from ..beyond import timeline
 from ..beyond.classifier_free import guided_by_condition
-from ..conditions.acts import seconds_of
+from ..conditions.acts import apart, seconds_of
 from ..conditions.clip import ClipModel, check
 from ..conditions.text import Read
 from ..conditions.word_encoder import WordReader
@@ -259,7 +259,9 @@ class Mover(Performer):
 
         def draw(which: list[int], again: int) -> list[Float[np.ndarray, "T 21 3"]]:
             draws = generators(seed, count, *([again] if again else []))
-            return self._acts(found, frames, [draws[k] for k in which], steps, guidance, bars)
+            pair = apart(found.asked) if again else ()
+            draws = [draws[k] for k in which]
+            return self._acts(found, pair, frames, draws, steps, guidance, bars)
 
         acts, wrong = until_shown(found.asked, draw, count, tries)
         made = []
@@ -273,20 +275,26 @@ class Mover(Performer):
     def _acts(
         self,
         found: Read,
+        pair: tuple[str, ...],
         frames: int,
         draws: list[torch.Generator],
         steps: int | None,
         guidance: float,
         watch: Watch,
     ) -> list[Float[np.ndarray, "{frames} 21 3"]]:
-        """Motions for a text that was read, one for each generator, with clean feet and bones."""
+        """Motions for a text that was read, one for each generator, with clean feet and bones.
+
+        `pair`: a text for the legs and one for the arms, planned on their own; or none.
+        """
         ids = self.reader.encoded([found.words] * len(draws))
         whole = -(-frames // GRID) * GRID  # as in training; what is too much is cut off
         plan = None
         if self.can_plan:
-            plan = self.plans(
-                ids, whole, generator=draws, steps=steps, guidance=guidance, watch=watch
-            )
+            plans = [
+                self.plans(one, whole, generator=draws, steps=steps, guidance=guidance, watch=watch)
+                for one in self.planned_from(ids, pair)
+            ]
+            plan = timeline.joined(plans)
         denoise = self.denoiser(ids, whole, guidance, plan)
         x_S = self._noise((len(draws), whole, D), draws, None)
         made = self.positions_of(
@@ -294,6 +302,12 @@ class Mover(Performer):
         )
         acts = made.double().cpu().numpy()
         return [clean_up(x, FPS, body=Body.of(x, bones=BONE_LENGTHS))[:frames] for x in acts]
+
+    def planned_from(self, ids: Texts, pair: tuple[str, ...]) -> list[Texts]:
+        """What timelines are made from: the text, or one text for the legs and one for the arms."""
+        if not pair:
+            return [ids]
+        return [self.reader.encoded([self.reader.read(one).words] * len(ids)) for one in pair]
 
     @torch.no_grad()
     def act_ids(

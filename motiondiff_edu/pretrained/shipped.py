@@ -10,6 +10,7 @@ from functools import lru_cache
 import numpy as np
 from jaxtyping import Bool, Float
 
+from ..conditions.acts import apart
 from ..editing import by_words
 from ..editing import reconstruct as reconstruction
 from ..editing.by_words import STRENGTH
@@ -189,6 +190,7 @@ def edit(
         made = by_words.edit_by_words(
             mover, motion.positions, text, mask, strength=min(1.0, strength + again * STRONGER),
             samples=len(which), generator=[draws[k] for k in which],
+            pair=apart(found.asked) if again else (),
             watch=bar("editing", shown=progress),
         )  # fmt: skip
         return [clean_up(one, FPS, kept, body=body, floor=floor) for one in made]

@@ -55,6 +55,7 @@ from .walks import departures as walker_departures
 from .walks.parts import FULL, LINES, QUICK, Bench, Walks, footstep_records, walker_records
 from .walks.parts import weights_digest as digest
 from .words import budget as word_budget
+from .words import free
 from .words import parts as words
 
 DOCS, RUNS = Path("docs"), Path("build/runs")
@@ -175,6 +176,8 @@ PARTS = {
         *c.performer("dancer"), c.of(real_music.FULL, real_music.QUICK), command), "dancer",
         by_name=True),
     "gate": part(lambda c, command: gate.gate_records(command, c.quick), by_name=True),
+    "words-free": part(lambda c, command: free.free_records(
+        c.bench.weights["mover"], command, c.quick), "mover", by_name=True),
     "files": part(lambda c, command: files.file_records(command, c.quick), by_name=True),
     "collect": part(lambda c, command: collect_records(command, c.quick), by_name=True),
     "course-shown": part(lambda c, command: shown_records(command), by_name=True),

@@ -3,6 +3,7 @@
 words.free_right    all that is asked for is to be seen, in its order, with sides and counts
 words.free_refused  the sentence is refused
 words.free_unsaid   something asked for is not to be seen, and nothing is said
+edit.asked_is_shown, edit.unsaid    the same of edits of recordings whose legs and path are kept
 
 `free_sentences.json` has 200 sentences, written before the mover was trained by somebody who had
 not seen the grammar, each with what a careful person must see. What the figure cannot do at all
@@ -13,23 +14,40 @@ of `act` do not know (`second.py`); how well that one sees the data's own clips 
 import json
 import re
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+import motiondiff_edu as md
 from data_synth.actions import clips
+from motiondiff_edu.beyond import timeline
 from motiondiff_edu.conditions.text import TextError
-from motiondiff_edu.metrics.texts import Asked, Recognised, shortfalls
+from motiondiff_edu.editing.masks import body_part
+from motiondiff_edu.metrics.texts import Asked, Recognised, actions, shortfalls
+from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.performers.mover import Mover
+from motiondiff_edu.pretrained import checkpoints
 
+from ..recordings.windows import FULL, recorded, trials
+from ..walks.parts import weights_digest
 from ..walks.scores import Measure, measure_of
 from .second import tagged, trained
 
 FREE = Path(__file__).with_name("free_sentences.json")
+EDITED = 10  # windows of recorded walks, each edited in the ways of ARMS
+# the gerund, and the verb, side and count that are to be seen
+ARMS = (
+    ("waving with the left hand", "wave", "left", 0),
+    ("clapping three times", "clap", "", 3),
+    ("raising both arms", "raise", "both", 1),
+    ("pointing forward with the right hand", "point", "right", 0),
+    ("punching with the right hand twice", "punch", "right", 2),
+    ("raising the left arm", "raise", "left", 1),
+)
 KNOWN = 150  # clips of the data, on which the judge is judged
 # notes that say that something is missing, and not only how a word was read
-SAYS = re.compile("^asked: |not understood|left out|at most|has no|one side|one speed|once, not")
+SAYS = re.compile("asked: |not understood|left out|at most|has no|one side|one speed|once, not")
 
 
 @dataclass(frozen=True)
@@ -87,23 +105,70 @@ def tried(mover: Mover, record: dict, judge, seed: int) -> Tried:
     return Tried(record["text"], False, tuple(missing), notes)
 
 
-def free_measures(mover: Mover, most: int | None = None, show=None) -> list[Measure]:
-    """All measures; `show` gets each sentence that was tried."""
+def edited(motion: Motion, text: str, record: dict, judge, seed: int) -> Tried:
+    """What `edit` makes of one sentence about the arms of a recording, whose legs are kept."""
+    legs = body_part(len(motion), "lower body")
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        made = md.edit(motion, text, legs, seed=seed, progress=False)
+    wanted = [act for act in asked_of(record)[0] if act.verb != "walk"]  # of the arms
+    missing = shortfalls([wanted], judge(made.positions))
+    notes = tuple(str(one.message) for one in said if SAYS.search(str(one.message)))
+    return Tried(text, False, tuple(missing), notes)
+
+
+def edit_measures(judge, most: int | None = None) -> list[Measure]:
+    """The measures of 60 edits of recorded walks."""
+    windows = [one for _, one in recorded(trials(), replace(FULL, each=2)) if walks(one)][:EDITED]
+    tries = [(motion, arms) for motion in windows for arms in ARMS][:most]
+    found = []
+    for k, (motion, (gerund, verb, side, count)) in enumerate(tries):
+        record = {"steps": [[{"verb": verb, "side": side, "count": count}]]}
+        found.append(edited(motion, f"walks forward while {gerund}", record, judge, k))
+    return [
+        share("asked_is_shown", [one.right for one in found]),
+        share("unsaid", [one.unsaid for one in found]),
+    ]
+
+
+def walks(motion: Motion) -> bool:
+    """Whether somebody walks in a recording, and does nothing that has a name with the arms."""
+    seen = {one.verb for one in actions(motion.positions)}
+    return "walk" in seen and not seen & {*timeline.ARMS} and len(motion) >= 60
+
+
+def share(name: str, rows: list[bool]) -> Measure:
+    return measure_of(name, "share", np.mean, np.array(rows, float))
+
+
+def free_records(weights: Path, command: str, quick: bool) -> list[dict]:
+    """All records."""
+    mover, most = checkpoints.load(weights), 6 if quick else None
     model, scaler = trained()
+
+    def judge(positions):
+        return tagged(model, scaler, positions)
+
+    about = {"weights": weights_digest(weights)}
+    found = free_measures(mover, judge, most)
+    records = [
+        one.as_record("words.", about | {"sentences": len(sentences())}, command) for one in found
+    ]
+    edits = edit_measures(judge, most)
+    count = EDITED * len(ARMS)
+    return records + [one.as_record("edit.", about | {"edits": count}, command) for one in edits]
+
+
+def free_measures(mover: Mover, judge, most: int | None = None, show=None) -> list[Measure]:
+    """The measures of the sentences; `show` gets each that was tried."""
     known = [one.acted for one in clips(KNOWN, 301, "test")]
     seen = []
     for acted in known:
         phrases = [[Asked(a.verb, a.side, a.count) for a in p.acts] for p in acted.sentence]
-        seen.append(not shortfalls(phrases, tagged(model, scaler, acted.positions)))
-    found = [
-        tried(mover, record, lambda x: tagged(model, scaler, x), k)
-        for k, record in enumerate(sentences()[:most])
-    ]
+        seen.append(not shortfalls(phrases, judge(acted.positions)))
+    found = [tried(mover, record, judge, k) for k, record in enumerate(sentences()[:most])]
     for one in found if show else ():
         show(one)
-
-    def share(name: str, rows: list[bool]) -> Measure:
-        return measure_of(name, "share", np.mean, np.array(rows, float))
 
     return [
         share("free_right", [one.right for one in found]),

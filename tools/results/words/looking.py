@@ -37,7 +37,7 @@ from .rows import performed
 from .trials import UNSEEN, Positions, unseen
 
 LOOKED_AT = Path(__file__).with_name("looked_at.json")
-CLIPS = 200
+CLIPS = 100
 SEED = UNSEEN + 3
 STEPS = 25  # of DDIM: as they were looked at
 A_ROW, EVERY = 20, 2  # poses in a row of a sheet; frames from one to the next

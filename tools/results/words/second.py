@@ -8,6 +8,7 @@ synthetic clips what goes on in each frame (`beyond.timeline`), and knows nothin
 from collections.abc import Callable
 
 import numpy as np
+import scipy
 import torch
 from jaxtyping import Float
 from torch import Tensor, nn
@@ -15,12 +16,13 @@ from torch import Tensor, nn
 from motiondiff_edu.beyond import timeline
 from motiondiff_edu.metrics.texts import Recognised
 from motiondiff_edu.motion import moving_frame
+from motiondiff_edu.motion.root_frame import FPS
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.recipes.mover import described
 
 CLIPS = 4000
 SEED = 71
-STEPS = 1500
+STEPS = 3000
 FRAMES = 4000  # of a batch
 WIDTH = 96
 DILATIONS = (1, 2, 4, 8, 16, 1)
@@ -53,8 +55,8 @@ def trained(log: Callable[[str], object] = print) -> tuple[Tagger, Scaler]:
     generator = torch.Generator().manual_seed(SEED)
     torch.manual_seed(SEED)
     model = Tagger()
-    optimizer = torch.optim.AdamW(model.parameters(), lr=2e-3)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, 2e-3, total_steps=STEPS)
+    optimizer = torch.optim.AdamW(model.parameters(), lr=1e-3)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, 1e-3, total_steps=STEPS)
     for step in range(STEPS):
         x, _, _ = windows.draw(FRAMES, generator)
         poses, wanted = x[..., : moving_frame.D], x[..., moving_frame.D :]
@@ -78,10 +80,23 @@ def tagged(
     features = torch.from_numpy(moving_frame.to_features(positions)).float()
     poses = scaler.part(slice(moving_frame.D)).transform(features)[None]
     columns = scaler.part(slice(moving_frame.D, None)).inverse(model(poses))[0]
+    made = columns.double().numpy()
     return [
-        Recognised(one.verb, side_of(one), one.count, "", one.first, one.last)
-        for one in timeline.acts_of(columns.double().numpy())
+        Recognised(one.verb, side_of(one), times_of(one, made), "", one.first, one.last)
+        for one in timeline.acts_of(made)
     ]
+
+
+def times_of(act: timeline.Timed, columns: Float[np.ndarray, "T 24"]) -> int:
+    """How often an act is done: the hills of the column that says how far each time is."""
+    if act.verb not in timeline.WITH_TIMES:
+        return 1
+    hills = columns[
+        round(act.first * FPS) : round(act.last * FPS),
+        timeline.MIDDLE + (act.verb in timeline.ARMS),
+    ]
+    smooth = scipy.ndimage.gaussian_filter1d(hills, 1.0)
+    return max(1, len(scipy.signal.find_peaks(np.pad(smooth, 1), height=0.4, prominence=0.3)[0]))
 
 
 def side_of(act: timeline.Timed) -> str:
