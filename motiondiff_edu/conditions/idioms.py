@@ -41,7 +41,13 @@ REWRITTEN = tuple(
         ),
         (r"\b(speed|power)[- ]?walk(s|ing)?\b", " walk quickly "),
         (r"\b(shadow[- ]?)?boxing\b", " punch some-times "),
-        (r"\bover and over( again)?\b|\bagain and again\b|\brepeatedly\b", " some-times "),
+        (
+            r"\bover and over( again)?\b|\bagain and again\b|\brepeatedly\b|\bup and down\b|"
+            r"\b(continuously|constantly|non-?stop)\b",
+            " some-times ",
+        ),
+        (r"\b(a )?(series|set|number|bunch|flurry|lot|round|string) of\b", " several "),
+        (r"\b(shadow[- ]?)?boxes\b", " punches some-times "),
         (
             r"\b(jump|leap|spring|hop|get|stand)(s|ing)? (right |quickly )?up from "
             r"(sitting|{own}(chair|seat|stool|bench))\b",

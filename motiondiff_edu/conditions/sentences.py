@@ -191,11 +191,12 @@ def acts_in(piece: str, notes: list[str]) -> Iterator[tuple[Head, Act]]:
 
 
 def plural(tokens: Sequence[str], k: int) -> bool:
-    """Whether a verb is a noun in the plural: "does squats", "throws quick punches"."""
+    """Whether a verb is a noun in the plural: "does squats", "quick punches"."""
     before = list(tokens[:k])
+    quick = bool(before) and before[-1] in PACES and not before[-1].endswith("ly")
     while before and before[-1] in (*SIDES, *PACES, "some"):
         before.pop()
-    return tokens[k].endswith("s") and bool(before) and is_light(before[-1])
+    return tokens[k].endswith("s") and (quick or bool(before) and is_light(before[-1]))
 
 
 def named_again(verb: str, last: Head, before: Sequence[str]) -> bool:
