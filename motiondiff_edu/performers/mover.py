@@ -7,6 +7,7 @@ Notebook: 16, 17
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import torch
@@ -303,7 +304,7 @@ class Mover(Performer):
         acts = made.double().cpu().numpy()
         return [clean_up(x, FPS, body=Body.of(x, bones=BONE_LENGTHS))[:frames] for x in acts]
 
-    def planned_from(self, ids: Texts, pair: tuple[str, ...]) -> list[Texts]:
+    def planned_from(self, ids: Texts, pair: tuple[str, ...]) -> list[Any]:
         """What timelines are made from: the text, or one text for the legs and one for the arms."""
         if not pair:
             return [ids]

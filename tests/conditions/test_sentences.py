@@ -8,7 +8,7 @@ import pytest
 from data_synth.actions.acts import VERBS, seated
 from data_synth.actions.captions import WORDINGS, caption, vocabulary, words_of
 from data_synth.actions.sentences import draw
-from motiondiff_edu.conditions.acts import KINDS, PLAIN, Act, in_words, seconds_of
+from motiondiff_edu.conditions.acts import KINDS, PLAIN, Act, apart, in_words, seconds_of
 from motiondiff_edu.conditions.sentences import understand
 
 
@@ -175,3 +175,10 @@ def test_who_sits_and_who_stands():
         from data_synth.actions import Phrase
 
         seated((Phrase(Done("walk")), Phrase(Done("rise"))))
+
+
+def test_a_pair_is_put_into_a_sentence_for_the_legs_and_one_for_the_arms():
+    for text in ("raises both arms while running", "runs while raising both arms"):
+        assert apart(understand(text).parts) == ("runs forward", "raises both arms")
+    assert apart(understand("walks, then waves").parts) == apart(understand("walks").parts) == ()
+    assert apart(understand("walks while waving, then bows").parts) == ()

@@ -134,10 +134,10 @@ def test_the_timeline_goes_with_what_is_kept(positions):
     assert kept_columns(known)[:, legs].all() and not kept_columns(known)[:, ~legs].any()
     assert kept_columns(~known)[:, ~legs].all() and not kept_columns(~known)[:, legs].any()
     draws = [torch.Generator().manual_seed(k) for k in (0, 0)]
-    kept = _plan(mover, walk, known, texts, draws[0])
+    kept = _plan(mover, walk, kept_columns(known), texts, draws[0])
     assert kept[0, :, timeline.VERBS.index("walk")].mean() > 0.8
     assert not kept[0, :, timeline.VERBS.index("squat")].any()
-    free = _plan(mover, walk, np.zeros_like(known), texts, draws[1])
+    free = _plan(mover, walk, kept_columns(np.zeros_like(known)), texts, draws[1])
     assert not torch.equal(kept, free)
 
 

@@ -17,6 +17,7 @@ from motiondiff_edu.conditions.word_encoder import NOTHING, PADDING, WordEncoder
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.kinematic_loss import training_loss
 from motiondiff_edu.metrics.bodies import bone_lengths
+from motiondiff_edu.motion.motion import MotionWarning
 from motiondiff_edu.motion.moving_frame import D, to_features, to_positions
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS
@@ -112,6 +113,27 @@ def test_a_plan_is_made_tidied_and_followed(planning):
     other = torch.from_numpy(timeline.timeline(acts, 40)).float()[None]
     moved = planning.act_ids(ids, 40, steps=3, plan=other, generator=seeded())
     assert (moved - planning.act_ids(ids, 40, steps=3, plan=0 * other, generator=seeded())).any()
+
+
+def test_what_is_not_shown_is_drawn_again_with_legs_and_arms_planned_apart(planning, monkeypatch):
+    asked = []
+    before = Mover.planned_from
+
+    def planned_from(mover, ids, pair):
+        asked.append((len(ids), pair))
+        return before(mover, ids, pair)
+
+    monkeypatch.setattr(Mover, "planned_from", planned_from)
+    how = {"seconds": 2.0, "steps": 2, "progress": False}
+    with pytest.warns(MotionWarning, match="asked: walks while waving; but .*is not to be seen"):
+        made = planning.act("walks while waving", samples=2, tries=3, **how)
+    pair = ("walks forward", "waves with the right hand")
+    assert asked == [(2, ()), (2, pair), (2, pair)]  # an untrained network shows nothing
+    assert all("is not to be seen" in one.notes[-1] for one in made)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        planning.act("stands still", tries=3, **how)
+    assert asked[3:] == [(1, ())]  # nothing is to be seen, and so nothing is missing
 
 
 def test_a_plan_needs_a_network_that_takes_one(planning):

@@ -1,0 +1,73 @@
+"""Free sentences: what counts as right, refused and unsaid, and the second judge's counting."""
+
+import re
+import warnings
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from data_synth.actions import Act, Phrase, act_out
+from motiondiff_edu.beyond import timeline
+from motiondiff_edu.conditions.text import TextError
+from motiondiff_edu.metrics.texts import actions
+from motiondiff_edu.motion.motion import MotionWarning
+from tools.results.words import free
+from tools.results.words.second import times_of
+
+
+def mover_that(says: str = "", refuses: bool = False):
+    """A mover that kicks twice with the left foot whatever it is asked."""
+    positions = act_out((Phrase(Act("kick", "left", count=2)),), 5.0, 3).positions
+
+    def act(text, seed, progress):
+        if refuses:
+            raise TextError("what?")
+        if says:
+            warnings.warn(says, MotionWarning, stacklevel=1)
+        return SimpleNamespace(positions=positions)
+
+    return SimpleNamespace(act=act)
+
+
+KICKS = {"text": "kicks twice", "steps": [[{"verb": "kick", "count": 2}]], "beyond": []}
+
+
+@pytest.mark.parametrize(
+    "mover, record, right, refused, unsaid",
+    [
+        (mover_that(), {}, True, False, False),
+        (mover_that(), {"beyond": ["a ball"]}, False, False, True),
+        (mover_that("not understood, and left out: 'ball'"), {"beyond": ["a ball"]},
+         False, False, False),
+        (mover_that("'boots' is read as 'kicks'"), {"beyond": ["a ball"]}, False, False, True),
+        (mover_that(), {"steps": [[{"verb": "kick", "count": 3}]]}, False, False, True),
+        (mover_that(), {"steps": [[{"verb": "kick", "min_count": 2}]]}, True, False, False),
+        (mover_that(), {"steps": [[{"verb": "kick", "min_count": 3}]]}, False, False, True),
+        (mover_that(), {"steps": [[{"verb": "kick", "side": "right"}]]}, False, False, True),
+        (mover_that("asked: kicks, jumps; but 'jump' is not to be seen"),
+         {"steps": [[{"verb": "kick"}], [{"verb": "jump"}]]}, False, False, False),
+        (mover_that(refuses=True), {}, False, True, False),
+    ],
+)  # fmt: skip
+def test_a_sentence_is_right_refused_or_unsaid(mover, record, right, refused, unsaid):
+    found = free.tried(mover, KICKS | record, actions, 0)
+    assert (found.right, found.refused, found.unsaid) == (right, refused, unsaid)
+
+
+def test_the_sentences_ask_for_acts_that_there_are():
+    records = free.sentences()
+    assert len(records) == 200 and len({one["text"] for one in records}) == 200
+    verbs = {act["verb"] for one in records for step in one["steps"] for act in step}
+    assert verbs <= {*timeline.VERBS} and len(verbs) > 12
+    assert all(one["steps"] or one["beyond"] for one in records)
+    assert all(re.search("[a-zA-Z]", one["text"]) for one in records)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 4])
+def test_the_second_judge_counts_hills(count):
+    act = timeline.Timed("kick", "left", count, 1.0, 1.0 + 1.3 * count)
+    made = timeline.timeline([act], 140)
+    rng = np.random.default_rng(count)
+    assert times_of(act, made + 0.05 * rng.standard_normal(made.shape)) == count
+    assert times_of(timeline.Timed("walk", "", 1, 0.0, 3.0), made) == 1
