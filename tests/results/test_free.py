@@ -1,5 +1,6 @@
 """Free sentences: what counts as right, refused and unsaid, and the second judge's counting."""
 
+import json
 import re
 import warnings
 from types import SimpleNamespace
@@ -71,3 +72,13 @@ def test_the_second_judge_counts_hills(count):
     rng = np.random.default_rng(count)
     assert times_of(act, made + 0.05 * rng.standard_normal(made.shape)) == count
     assert times_of(timeline.Timed("walk", "", 1, 0.0, 3.0), made) == 1
+
+
+def test_edits_that_were_looked_at_are_counted_for_their_weights_alone():
+    record = json.loads(free.SEEN_EDITS.read_text(encoding="utf-8"))
+    assert len(record["edits"]) == 30 and free.seen_measures("others") == []
+    shown, unsaid = (one.value for one in free.seen_measures(record["weights"]))
+    assert 0.5 < shown < 1 and unsaid <= 1 - shown
+    assert free.fits(("clap", "", 3), ["clap", "", 3])
+    assert not free.fits(("clap", "", 3), ["clap", "", 2])
+    assert not free.fits(("wave", "left", 0), ["wave", "right", 1])

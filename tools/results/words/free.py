@@ -3,7 +3,10 @@
 words.free_right    all that is asked for is to be seen, in its order, with sides and counts
 words.free_refused  the sentence is refused
 words.free_unsaid   something asked for is not to be seen, and nothing is said
-edit.asked_is_shown, edit.unsaid    the same of edits of recordings whose legs and path are kept
+edit.asked_is_shown, edit.unsaid    of edits of recordings whose legs and path are kept: acts, sides
+                    and counts of the arms, by the rules of `metrics.texts`
+edit.seen_asked_is_shown, edit.seen_unsaid    of half of them, by a vision model that looked at
+                    sheets (`looked_at_edits.json`) and did not know what was asked
 
 `free_sentences.json` has 200 sentences, written before the mover was trained by somebody who had
 not seen the grammar, each with what a careful person must see. What the figure cannot do at all
@@ -45,6 +48,7 @@ ARMS = (
     ("punching with the right hand twice", "punch", "right", 2),
     ("raising the left arm", "raise", "left", 1),
 )
+SEEN_EDITS = Path(__file__).with_name("looked_at_edits.json")
 KNOWN = 150  # clips of the data, on which the judge is judged
 # notes that say that something is missing, and not only how a word was read
 SAYS = re.compile("asked: |not understood|left out|at most|has no|one side|one speed|once, not")
@@ -129,6 +133,25 @@ def edit_measures(judge, most: int | None = None) -> list[Measure]:
         share("asked_is_shown", [one.right for one in found]),
         share("unsaid", [one.unsaid for one in found]),
     ]
+
+
+def seen_measures(digest: str) -> list[Measure]:
+    """What was seen of edits, beside what was asked; nothing if other weights were looked at."""
+    record = json.loads(SEEN_EDITS.read_text(encoding="utf-8"))
+    if record["weights"] != digest:
+        return []
+    wanted = {gerund: (verb, side, count) for gerund, verb, side, count in ARMS}
+    shown = [any(fits(wanted[one["asked"]], act) for act in one["seen"]) for one in record["edits"]]
+    said = [one["said"] for one in record["edits"]]
+    return [
+        share("seen_asked_is_shown", shown),
+        share("seen_unsaid", [not (a or b) for a, b in zip(shown, said, strict=True)]),
+    ]
+
+
+def fits(wanted: tuple[str, str, int], seen: list) -> bool:
+    """Whether an act that was seen is the one that was asked for; 0 times says nothing."""
+    return all(not want or want == one for want, one in zip(wanted, seen, strict=True))
 
 
 def walks(motion: Motion) -> bool:
