@@ -138,8 +138,8 @@ def test_a_sheet_has_all_poses(some):
 def test_sides_are_confused_in_a_mirror_and_nowhere_else(some):
     twins = [one[:, MIRROR] * np.array([-1.0, 1.0, 1.0]) for one in some.truth]
     data, wrong = (by_name(scores.sides(some, made)) for made in (some.truth, twins))
-    assert data["side_confused"] == 0 and data["asked_left_shown_left"] > 0.9
-    assert wrong["side_confused"] > 0.9 and wrong["asked_left_shown_right"] > 0.9
+    assert data["side_confused"] == 0 and data["asked_left_shown_left"] > 0.85
+    assert wrong["side_confused"] > 0.85 and wrong["asked_left_shown_right"] > 0.85
     nothing = [np.repeat(one[:1], len(one), 0) for one in some.truth]
     assert np.isnan(by_name(scores.sides(some, nothing))["side_confused"])
     for found in (data, wrong):
