@@ -2,7 +2,6 @@
 
     "gets back on their feet" -> rise      "with both arms in the air" -> & hold-s
 A new way to say something is a line here. No word was chosen by looking at sentences for judging.
-Notebook: 16
 """
 
 import re

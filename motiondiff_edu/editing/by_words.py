@@ -17,6 +17,7 @@ from torch import Tensor
 
 from ..beyond import timeline
 from ..beyond.guidance import blended
+from ..conditions.text import Read
 from ..ddpm import Generators, draw, final, q_sample, timesteps
 from ..inbetweening import inpaint_steps
 from ..metrics.texts import HANDS, actions
@@ -39,12 +40,11 @@ FADE = 10  # frames within which a generated part joins a kept span of time
 def edit_by_words(
     mover: Mover,
     positions: Float[np.ndarray, "T 21 3"],
-    text: str,
+    text: str | Read,
     known: Bool[np.ndarray, "T 21"] | None = None,
     *,
     strength: float = STRENGTH,
     samples: int = 1,
-    pair: tuple[str, ...] = (),
     generator: Generators | None = None,
     watch: Watch = iter,
 ) -> Float[np.ndarray, "samples T 21 3"]:
@@ -54,7 +54,6 @@ def edit_by_words(
               pelvis is known in a frame and the next, the root keeps its velocity, too. Default:
               nothing is masked
     strength  above 0, up to 1; with 1 nothing but the known part is left of the motion
-    pair      a text for the legs and one for the arms, whose timelines are made on their own
     watch     gets each sampling loop, and shows how far it is
     Without a `generator` the seed is 0. The first frame stays where it was, facing the same way.
     While the pelvis is known from the first frame on, known joints come back bit by bit.
@@ -69,7 +68,8 @@ def edit_by_words(
     # those of DDIM up to this share of S; the last one at least
     share = checked_strength(strength) * mover.schedule.S
     ways = [s for s in every if s <= round(share)] or every[-1:]
-    ids = mover.reader.encoded([mover.reader.read(text).words] * samples)
+    found = text if isinstance(text, Read) else mover.reader.read(text)
+    ids = mover.reader.encoded([found.words] * samples)
     generator = generator or torch.Generator().manual_seed(0)
     size = leg_size(positions)  # the mover knows figures of the course's size
     given, schedule = mover.units_of(positions / size).expand(samples, -1, -1), mover.schedule
@@ -78,10 +78,11 @@ def edit_by_words(
     plan = None
     if mover.can_plan:
         legs = timeline.of_the_legs()
-        owns = (legs, ~legs) if pair else (torch.ones_like(legs),)
+        texts = mover.planned_from(found, samples)
+        owns = (legs, ~legs) if len(texts) > 1 else (torch.ones_like(legs),)
         plans = [
             _plan(mover, positions / size, kept_columns(mask) & own, one, generator, watch)
-            for one, own in zip(mover.planned_from(ids, pair), owns, strict=True)
+            for one, own in zip(texts, owns, strict=True)
         ]
         plan = timeline.joined(plans)
     denoise = mover.denoiser(ids, len(positions), plan=plan)

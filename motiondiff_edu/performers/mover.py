@@ -6,7 +6,7 @@ Notebook: 16, 17
 
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -260,9 +260,9 @@ class Mover(Performer):
 
         def draw(which: list[int], again: int) -> list[Float[np.ndarray, "T 21 3"]]:
             draws = generators(seed, count, *([again] if again else []))
-            pair = apart(found.asked) if again else ()
             draws = [draws[k] for k in which]
-            return self._acts(found, pair, frames, draws, steps, guidance, bars)
+            read = replace(found, apart=again > 0)
+            return self._acts(read, frames, draws, steps, guidance, bars)
 
         acts, wrong = until_shown(found.asked, draw, count, tries)
         made = []
@@ -276,24 +276,20 @@ class Mover(Performer):
     def _acts(
         self,
         found: Read,
-        pair: tuple[str, ...],
         frames: int,
         draws: list[torch.Generator],
         steps: int | None,
         guidance: float,
         watch: Watch,
     ) -> list[Float[np.ndarray, "{frames} 21 3"]]:
-        """Motions for a text that was read, one for each generator, with clean feet and bones.
-
-        `pair`: a text for the legs and one for the arms, planned on their own; or none.
-        """
+        """Motions for a text that was read, one for each generator, with clean feet and bones."""
         ids = self.reader.encoded([found.words] * len(draws))
         whole = -(-frames // GRID) * GRID  # as in training; what is too much is cut off
         plan = None
         if self.can_plan:
             plans = [
                 self.plans(one, whole, generator=draws, steps=steps, guidance=guidance, watch=watch)
-                for one in self.planned_from(ids, pair)
+                for one in self.planned_from(found, len(draws))
             ]
             plan = timeline.joined(plans)
         denoise = self.denoiser(ids, whole, guidance, plan)
@@ -304,11 +300,11 @@ class Mover(Performer):
         acts = made.double().cpu().numpy()
         return [clean_up(x, FPS, body=Body.of(x, bones=BONE_LENGTHS))[:frames] for x in acts]
 
-    def planned_from(self, ids: Texts, pair: tuple[str, ...]) -> list[Any]:
-        """What timelines are made from: the text, or one text for the legs and one for the arms."""
-        if not pair:
-            return [ids]
-        return [self.reader.encoded([self.reader.read(one).words] * len(ids)) for one in pair]
+    def planned_from(self, found: Read, count: int) -> list[Any]:
+        """What timelines are made from: a text, or one for the legs and one for the arms."""
+        texts = apart(found.asked) if found.apart else ()
+        words = [self.reader.read(one).words for one in texts] or [found.words]
+        return [self.reader.encoded([one] * count) for one in words]
 
     @torch.no_grad()
     def act_ids(

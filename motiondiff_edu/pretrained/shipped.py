@@ -10,7 +10,6 @@ from functools import lru_cache
 import numpy as np
 from jaxtyping import Bool, Float
 
-from ..conditions.acts import apart
 from ..editing import by_words
 from ..editing import reconstruct as reconstruction
 from ..editing.by_words import STRENGTH
@@ -188,9 +187,9 @@ def edit(
     def draw(which: list[int], again: int) -> list[Float[np.ndarray, "T 21 3"]]:
         draws = generators(seed, count, *([again] if again else []))
         made = by_words.edit_by_words(
-            mover, motion.positions, text, mask, strength=min(1.0, strength + again * STRONGER),
+            mover, motion.positions, replace(found, apart=again > 0), mask,
+            strength=min(1.0, strength + again * STRONGER),
             samples=len(which), generator=[draws[k] for k in which],
-            pair=apart(found.asked) if again else (),
             watch=bar("editing", shown=progress),
         )  # fmt: skip
         return [clean_up(one, FPS, kept, body=body, floor=floor) for one in made]

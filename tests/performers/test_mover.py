@@ -119,21 +119,22 @@ def test_what_is_not_shown_is_drawn_again_with_legs_and_arms_planned_apart(plann
     asked = []
     before = Mover.planned_from
 
-    def planned_from(mover, ids, pair):
-        asked.append((len(ids), pair))
-        return before(mover, ids, pair)
+    def planned_from(mover, found, count):
+        texts = before(mover, found, count)
+        asked.append((count, found.apart, len(texts)))
+        return texts
 
     monkeypatch.setattr(Mover, "planned_from", planned_from)
     how = {"seconds": 2.0, "steps": 2, "progress": False}
     with pytest.warns(MotionWarning, match="asked: walks while waving; but .*is not to be seen"):
         made = planning.act("walks while waving", samples=2, tries=3, **how)
-    pair = ("walks forward", "waves with the right hand")
-    assert asked == [(2, ()), (2, pair), (2, pair)]  # an untrained network shows nothing
+    # an untrained network shows nothing
+    assert asked == [(2, False, 1), (2, True, 2), (2, True, 2)]
     assert all("is not to be seen" in one.notes[-1] for one in made)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         planning.act("stands still", tries=3, **how)
-    assert asked[3:] == [(1, ())]  # nothing is to be seen, and so nothing is missing
+    assert asked[3:] == [(1, False, 1)]  # nothing is to be seen, and so nothing is missing
 
 
 def test_a_plan_needs_a_network_that_takes_one(planning):

@@ -26,6 +26,9 @@ CALLED = {  # part: where its function is, and its name
     "real-music": (command.real_music, "music_records"),
     "course-shown": (command, "shown_records"),
     "gate": (command.gate, "gate_records"),
+    "files": (command.files, "file_records"),
+    "collect": (command, "collect_records"),
+    "words-free": (command.free, "free_records"),
     "eye": (command.eyes, "eye_records"),
     "eye-recordings": (command.eyes, "recorded_records"),
 }
