@@ -7,16 +7,18 @@ alone, so walks and all other motions stand apart. Intervals are over persons.
 
 import warnings
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from jaxtyping import Bool, Float
 
+import motiondiff_edu as md
 from data_synth.imperfect import ARM, LEG
 from motiondiff_edu.baselines.interpolation import linear
-from motiondiff_edu.editing.reconstruct import reconstruct
+from motiondiff_edu.editing.reconstruct import path_of, reconstruct
 from motiondiff_edu.metrics.keyframes import unknown_error
-from motiondiff_edu.motion.root_frame import FPS
-from motiondiff_edu.motion.skeleton import J, joint_index
+from motiondiff_edu.motion.root_frame import FPS, to_root_frame, to_world
+from motiondiff_edu.motion.skeleton import MIRROR, J, joint_index
 from motiondiff_edu.performers.performer import generators
 from motiondiff_edu.performers.walker import Walker
 
@@ -73,6 +75,29 @@ def measures_of(rows: list[dict[str, float]], sources: list[str]) -> list[Measur
     return found
 
 
+def still_arm(truth: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 21 3"]:
+    """The motion with the mean pose of its left arm, mirrored, as its right arm."""
+    place, facing = path_of(truth, np.ones(truth.shape[:2], bool))
+    poses, control = to_root_frame(truth, place, facing)
+    arm = [joint_index(name) for name in ARM]
+    poses[:, arm] = (poses[:, MIRROR[arm]] * (-1, 1, 1)).mean(0)
+    return to_world(poses, control, (*place[0].tolist(), float(facing[0])))
+
+
+def arm_rows(size: RecordedSize) -> list[tuple[bool, bool]]:
+    """For each recording: is the drawn arm worse than a still one, and is anything said?"""
+    rows, arm = [], [joint_index(name) for name in ARM]
+    for _, motion in recorded(trials(), replace(size, each=1)):
+        known = motion.all_but(list(ARM))
+        made = md.reconstruct(motion, known, progress=False)
+        errors = [
+            np.linalg.norm((one - motion.positions)[:, arm], axis=-1).mean()
+            for one in (made.positions, still_arm(motion.positions))
+        ]
+        rows.append((bool(errors[0] > errors[1]), bool(made.notes)))
+    return rows
+
+
 def reconstruction_records(
     walker: Walker, weights: str, size: RecordedSize, command: str
 ) -> list[dict]:
@@ -83,5 +108,13 @@ def reconstruction_records(
         for source, truth in pieces(size):
             sources.append(source)
             rows.append(row_of(walker, truth))
+        worse, said = np.array(arm_rows(size)).T
     seeds = amounts(sources) | {"sampling": 0, "weights": weights}
-    return [one.as_record("real.", seeds, command) for one in measures_of(rows, sources)]
+    arms = [
+        measure_of("worse_than_still", "share", np.mean, worse.astype(float)),
+        measure_of("worse_than_still_unsaid", "share", np.mean, (worse & ~said).astype(float)),
+    ]
+    return [
+        *(one.as_record("real.", seeds, command) for one in measures_of(rows, sources)),
+        *(one.as_record("reconstruct.", seeds | {"files": len(worse)}, command) for one in arms),
+    ]
