@@ -82,3 +82,11 @@ def test_edits_that_were_looked_at_are_counted_for_their_weights_alone():
     assert free.fits(("clap", "", 3), ["clap", "", 3])
     assert not free.fits(("clap", "", 3), ["clap", "", 2])
     assert not free.fits(("wave", "left", 0), ["wave", "right", 1])
+
+
+def test_sentences_that_were_looked_at_are_counted_for_their_weights_alone():
+    record = json.loads(free.SEEN_FREE.read_text(encoding="utf-8"))
+    assert len(record["sentences"]) == 100 and free.seen_free_measures("others") == []
+    right, unsaid = (one.value for one in free.seen_free_measures(record["weights"]))
+    refused = sum(one["refused"] for one in record["sentences"]) / 100
+    assert 0 < refused < 0.2 and 0.3 < right <= 1 - refused and unsaid < 1 - right - refused

@@ -3,6 +3,8 @@
 words.free_right    all that is asked for is to be seen, in its order, with sides and counts
 words.free_refused  the sentence is refused
 words.free_unsaid   something asked for is not to be seen, and nothing is said
+words.free_seen_right, words.free_seen_unsaid    of the first hundred, by a vision model that looked
+                    at sheets (`looked_at_free.json`) and did not know what was asked
 edit.asked_is_shown, edit.unsaid    of edits of recordings whose legs and path are kept: acts, sides
                     and counts of the arms, by the rules of `metrics.texts`
 edit.seen_asked_is_shown, edit.seen_unsaid    of half of them, by a vision model that looked at
@@ -48,6 +50,7 @@ ARMS = (
     ("punching with the right hand twice", "punch", "right", 2),
     ("raising the left arm", "raise", "left", 1),
 )
+SEEN_FREE = Path(__file__).with_name("looked_at_free.json")
 SEEN_EDITS = Path(__file__).with_name("looked_at_edits.json")
 KNOWN = 150  # clips of the data, on which the judge is judged
 # notes that say that something is missing, and not only how a word was read
@@ -149,6 +152,20 @@ def seen_measures(digest: str) -> list[Measure]:
     ]
 
 
+def seen_free_measures(digest: str) -> list[Measure]:
+    """The same of what was seen of sentences; a sentence that is refused was not looked at."""
+    record = json.loads(SEEN_FREE.read_text(encoding="utf-8"))
+    if record["weights"] != digest:
+        return []
+    right, unsaid = [], []
+    for sentence, one in zip(sentences(), record["sentences"], strict=False):
+        acts = [Recognised(*act, "", k, k + 0.5) for k, act in enumerate(one["seen"])]
+        missing = missing_of(sentence, acts)
+        right.append(not one["refused"] and not missing)
+        unsaid.append(not one["refused"] and bool(missing) and not one["said"])
+    return [share("free_seen_right", right), share("free_seen_unsaid", unsaid)]
+
+
 def fits(wanted: tuple[str, str, int], seen: list) -> bool:
     """Whether an act that was seen is the one that was asked for; 0 times says nothing."""
     return all(not want or want == one for want, one in zip(wanted, seen, strict=True))
@@ -173,7 +190,7 @@ def free_records(weights: Path, command: str, quick: bool) -> list[dict]:
         return tagged(model, scaler, positions)
 
     about = {"weights": weights_digest(weights)}
-    found = free_measures(mover, judge, most)
+    found = [*free_measures(mover, judge, most), *seen_free_measures(about["weights"])]
     records = [
         one.as_record("words.", about | {"sentences": len(sentences())}, command) for one in found
     ]
