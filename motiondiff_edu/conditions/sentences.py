@@ -11,7 +11,7 @@ Notebook: 16
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from .acts import KINDS, ONE, Act, Parts
@@ -81,7 +81,7 @@ def parts_of(clause: str, notes: list[str]) -> list[tuple[Act, ...]]:
     pieces = clause.split("&")
     if len(pieces) == 2 and not pieces[0].strip():  # "while he walks, he waves"
         pieces = pieces[1].split(",", 1)
-    groups = [group for piece in pieces for group in [list(acts_in(piece, notes))] if group]
+    groups = [group for piece in pieces if (group := acts_in(piece, notes))]
     if not groups:
         return []
     joined = joined_acts(groups[0])
@@ -125,7 +125,7 @@ def at_once(first: tuple[Act, ...], second: tuple[Act, ...]) -> list[tuple[Act, 
     return [first, second]
 
 
-def acts_in(piece: str, notes: list[str]) -> Iterator[tuple[Head, Act]]:
+def acts_in(piece: str, notes: list[str]) -> list[tuple[Head, Act]]:
     """The acts of a piece without "while", in their order."""
     tokens = re.findall(r"[a-z]+(?:[-'][a-z]*)*|\d+|,", piece)
     heads: list[Head] = []
@@ -179,15 +179,15 @@ def acts_in(piece: str, notes: list[str]) -> Iterator[tuple[Head, Act]]:
             subject += [token] if who else []
     give_back(before, heads)
     if not heads and before.limbs and "up" in before.ways:  # "arms up"
-        heads.append(replace_head(before, "hold"))
+        heads.append(replace(before, verb="hold"))
     acts = [act for head in heads for act in acts_of(head, notes)]
-    yield from acts
     if heads:  # what stands before the first verb is who does it
         unknown = [word for word in unknown if word not in subject]
     if unknown:
         left = "not understood, and left out" if heads else "not understood"
         words = [repr(word.replace("-", " ")) for word in dict.fromkeys(unknown)]
         notes.append(f"{left}: {', '.join(words)}")
+    return acts
 
 
 def plural(tokens: Sequence[str], k: int) -> bool:
@@ -220,11 +220,6 @@ def addressed(tokens: Sequence[str], k: int, heads: Sequence[Head]) -> bool:
     return bool(before) and before[-1] in TOWARDS
 
 
-def replace_head(head: Head, verb: str) -> Head:
-    """The same words about another verb."""
-    return replace(head, verb=verb)
-
-
 def leads(tokens: Sequence[str], k: int) -> bool:
     """Whether a word belongs to a verb after it: nothing but such words lie between."""
     for token in tokens[k + 1 :]:
@@ -249,7 +244,6 @@ def give_back(more: Head, heads: list[Head]) -> None:
     if heads:
         last = heads[-1]
         if more.limbs and "up" in more.ways and KINDS.get(last.verb, KINDS["walk"]).part != "arms":
-            heads.append(replace_head(more, "hold"))
-            heads[-1].joined = "ing"
+            heads.append(replace(more, verb="hold", joined="ing"))
             return
         say_of(last, more)

@@ -44,15 +44,10 @@ def head_of(token: str, following: Sequence[str], notes: list[str]) -> str:
             notes.append(f"{token!r} is read as {other!r}")
             return verb
     if len(token) > 3:
-        swapped = [word for word in spelled() if sorted(word) == sorted(token)]
-        near = swapped or get_close_matches(token, spelled(), 1, 0.84)
-        if near and near[0][0] == token[0]:
-            notes.append(f"{token!r} is read as {near[0]!r}")
-            return (
-                HEADS[near[0]]
-                if near[0] in HEADS
-                else HEADS[next(f for f in base_forms(near[0]) if f in HEADS)]
-            )
+        near = misspelled(token, spelled())
+        if near:
+            notes.append(f"{token!r} is read as {near!r}")
+            return HEADS.get(near) or HEADS[next(f for f in base_forms(near) if f in HEADS)]
     return ""
 
 
@@ -72,6 +67,11 @@ def meant(token: str) -> str:
     words = [
         word for word in (*SIDES, *WAYS, *PACES, *NUMBERS, *LIMBS, "times", "down") if len(word) > 3
     ]
+    return misspelled(token, words)
+
+
+def misspelled(token: str, words: Sequence[str]) -> str:
+    """Which of these a word is meant to be: one with swapped letters, or a near one; or ""."""
     swapped = [word for word in words if sorted(word) == sorted(token)]
     near = swapped or get_close_matches(token, words, 1, 0.84)
     return near[0] if near and near[0][0] == token[0] else ""
