@@ -129,13 +129,6 @@ def mirrored(columns: Float[Tensor, "*B T F"]) -> Float[Tensor, "*B T F"]:
     return columns * sign[: columns.shape[-1]]
 
 
-def joined(plans: Sequence[Float[Tensor, "B T 24"]]) -> Float[Tensor, "B T 24"]:
-    """One timeline as it is; of two, the columns of the legs from the first, the others' from the
-    second.
-    """
-    return torch.where(of_the_legs().to(plans[0].device), plans[0], plans[-1])
-
-
 def of_the_legs() -> Bool[Tensor, "24"]:
     """True for the columns of the legs; the others are those of the arms."""
     legs = torch.zeros(D, dtype=torch.bool)

@@ -3,8 +3,10 @@
 Notebook: 16
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 Parts = tuple[tuple["Act", ...], ...]
 
@@ -95,17 +97,6 @@ def in_words(parts: Parts) -> str:
     return ", then ".join(part_in_words(part) for part in parts)
 
 
-def apart(parts: Parts) -> tuple[str, ...]:
-    """What legs and arms do, each in words of its own, where all that is asked is one pair at once.
-
-    Else nothing. For a pair that no caption of the training had, the two are easier to plan.
-    """
-    if len(parts) != 1 or len(parts[0]) != 2:
-        return ()
-    arms, legs = sorted(parts[0], key=lambda act: KINDS[act.verb].part != "arms")
-    return act_in_words(legs, 0), act_in_words(arms, 0)
-
-
 def part_in_words(part: Sequence[Act]) -> str:
     """What happens at one time."""
     first, *others = part
@@ -135,20 +126,88 @@ ON_THE_WAY = 2.4  # seconds of walking, turning and the like
 FACTORS = {"slowly": 1.5, "quickly": 0.9}
 BESIDE = 1.4  # seconds before and after all acts
 STOPS = 0.8  # seconds from a way of walking to an act on the spot
+BETWEEN = 0.3  # seconds between two other acts
+TURNING = {"": 1.1, "around": 1.9}  # seconds of a turn; it stands the rest of the time
+LASTING = ("walk", "run", "back", "aside", "stand")  # as long as there is time
+FILLING = ("wave", "hold", "point")  # of the arms: as long as what the legs do
+LATER = 0.17  # seconds from the beginning of what legs do to that of the arms
+
+
+def own_seconds(act: Act) -> float:
+    """About the seconds that an act takes."""
+    times = act.count or USUALLY.get(act.verb, 1)
+    return times * PERIODS.get(act.verb, ON_THE_WAY) * FACTORS.get(act.speed, 1.05)
+
+
+def of_the_part(part: Sequence[Act]) -> float:
+    """About the seconds that the acts of one time take."""
+    return max(map(own_seconds, part))
 
 
 def seconds_of(parts: Parts) -> float:
     """About the seconds that the acts take, from 2.5 to 10; 0 for none."""
     if not parts:
         return 0.0
-    total = BESIDE
-    for part in parts:
-        each = [
-            (act.count or USUALLY.get(act.verb, 1))
-            * PERIODS.get(act.verb, ON_THE_WAY)
-            * FACTORS.get(act.speed, 1.05)
-            for act in part
-        ]
-        ways = any(KINDS[act.verb].part == "way" for act in part)
-        total += max(each) + (STOPS if ways and len(parts) > 1 else 0.0)
+    stops = STOPS * sum(on_the_way(part) for part in parts) if len(parts) > 1 else 0.0
+    total = BESIDE + sum(map(of_the_part, parts)) + stops
     return round(min(max(total, 2.5), 10.0), 1)
+
+
+def on_the_way(part: Sequence[Act]) -> bool:
+    """Whether the figure goes somewhere, turns or stands."""
+    return any(KINDS[act.verb].part == "way" for act in part)
+
+
+def scheduled(
+    parts: Parts, seconds: float, rng: np.random.Generator
+) -> Iterator[tuple[Act, float, float]]:
+    """When each act may happen, from when to when (seconds), within `seconds`.
+
+    Who sits gets up before the legs do something else. What time is left goes to walking and the
+    like, or before and after all acts; where there is too little, all acts are quicker.
+    """
+    parts = with_rises(parts)
+    lasts = [of_the_part(part) for part in parts]
+    gaps = [STOPS if on_the_way(part) else BETWEEN for part in parts[:-1]]
+    lasting = [any(act.verb in LASTING for act in part) for part in parts]
+    before, after = ((not lasting[k]) * BESIDE / 2 for k in (0, -1))
+    need = before + sum(lasts) + sum(gaps) + after
+    pace, left = min(seconds / need, 1.0), max(seconds - need, 0.0)
+    if any(lasting):
+        shares = rng.dirichlet(np.full(sum(lasting), 3.0))
+        for k, share in zip(np.flatnonzero(lasting), shares, strict=True):
+            lasts[k] += left * float(share)
+    else:
+        before += left * float(rng.uniform(0.1, 0.6))
+    for part, whole, gap in zip(parts, lasts, (*gaps, after), strict=True):
+        for act in part:
+            first, last = within(act, whole, len(part) > 1, rng)
+            yield act, pace * (before + first), pace * (before + last)
+        before += whole + gap
+
+
+def with_rises(parts: Parts) -> Parts:
+    """The parts in which a seated figure gets up before its legs do something else."""
+    made: list[tuple[Act, ...]] = []
+    sits = False
+    for part in parts:
+        for act in (one for one in part if KINDS[one.verb].part != "arms"):
+            if sits and act.verb != "rise":
+                made.append((Act("rise"),))
+            sits = act.verb == "sit"
+        made.append(part)
+    return tuple(made)
+
+
+def within(act: Act, whole: float, beside: bool, rng: np.random.Generator) -> tuple[float, float]:
+    """When an act happens in a part of `whole` seconds; `beside` another one or alone."""
+    if act.verb == "turn":
+        return 0.0, TURNING[act.direction]
+    if act.verb in LASTING:
+        return 0.0, whole
+    first = LATER if beside and KINDS[act.verb].part == "arms" else 0.0
+    if act.verb in FILLING:
+        return first, whole
+    spare = max(whole - own_seconds(act) - first, 0.0)
+    first += spare * float(rng.uniform(0.1, 0.8)) if first else 0.0
+    return first, first + own_seconds(act)

@@ -86,15 +86,13 @@ class Read:
     """A text as a network gets it: its words, all known, and notes on how others were read.
 
     `text` is what was read, for the source of a motion. `asked` are the acts that it asks for
-    (`sentences.understand`), if they are known. `apart`: what legs and arms do at once is planned
-    for each on its own, as is easier for a pair that no caption of the training had (`acts.apart`).
+    (`sentences.understand`), if they are known.
     """
 
     text: str
     words: tuple[str, ...]
     notes: tuple[str, ...] = ()
     asked: tuple[tuple[Any, ...], ...] = ()
-    apart: bool = False
 
 
 @cache

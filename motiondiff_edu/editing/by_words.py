@@ -44,7 +44,7 @@ def edit_by_words(
     known: Bool[np.ndarray, "T 21"] | None = None,
     *,
     strength: float = STRENGTH,
-    samples: int = 1,
+    plan: Float[Tensor, "samples T 24"] | None = None,
     generator: Generators | None = None,
     watch: Watch = iter,
 ) -> Float[np.ndarray, "samples T 21 3"]:
@@ -54,9 +54,10 @@ def edit_by_words(
               pelvis is known in a frame and the next, the root keeps its velocity, too. Default:
               nothing is masked
     strength  above 0, up to 1; with 1 nothing but the known part is left of the motion
+    plan      timelines of what is not kept (default: generated), for a mover that plans
     watch     gets each sampling loop, and shows how far it is
-    Without a `generator` the seed is 0. The first frame stays where it was, facing the same way.
-    While the pelvis is known from the first frame on, known joints come back bit by bit.
+    Of each generator comes one motion; without any the seed is 0. The first frame stays where it
+    was, facing the same way. While the pelvis is known from the first frame on, known joints come back bit by bit.
     Raises TextError for a text that cannot be read, ValueError for a strength out of range, for
     positions that are not finite, and for another mask than T x 21 of True and False.
     """
@@ -69,22 +70,20 @@ def edit_by_words(
     share = checked_strength(strength) * mover.schedule.S
     ways = [s for s in every if s <= round(share)] or every[-1:]
     found = text if isinstance(text, Read) else mover.reader.read(text)
-    ids = mover.reader.encoded([found.words] * samples)
     generator = generator or torch.Generator().manual_seed(0)
+    samples = 1 if isinstance(generator, torch.Generator) else len(generator)
+    ids = mover.reader.encoded([found.words] * samples)
     size = leg_size(positions)  # the mover knows figures of the course's size
     given, schedule = mover.units_of(positions / size).expand(samples, -1, -1), mover.schedule
     held = columns(torch.from_numpy(mask)).to(given.device).expand(given.shape)
     start = q_sample(given, ways[0], schedule, draw(given, generator))
-    plan = None
     if mover.can_plan:
-        legs = timeline.of_the_legs()
-        texts = mover.planned_from(found, samples)
-        owns = (legs, ~legs) if len(texts) > 1 else (torch.ones_like(legs),)
-        plans = [
-            _plan(mover, positions / size, kept_columns(mask) & own, one, generator, watch)
-            for one, own in zip(texts, owns, strict=True)
-        ]
-        plan = timeline.joined(plans)
+        seen = torch.from_numpy(recognised_timeline(positions / size)).float().to(mover.device)
+        kept = kept_columns(mask).to(mover.device)
+        if plan is None:
+            plan = _plan(mover, seen, kept, ids, generator, watch)
+        else:
+            plan = torch.where(kept, seen, plan.to(mover.device))
     denoise = mover.denoiser(ids, len(positions), plan=plan)
     if held.any():
         denoise = blended(denoise, schedule, given, held, fade=FADE)
@@ -99,19 +98,17 @@ def edit_by_words(
 
 def _plan(
     mover: Mover,
-    positions: Float[np.ndarray, "T 21 3"],
+    seen: Float[Tensor, "T 24"],
     held: Bool[Tensor, "T 24"],
     texts: Texts,
     generator: Generators,
     watch: Watch = iter,
 ) -> Float[Tensor, "samples T 24"]:
-    """Timelines for the texts that go with what is known of the motion (in columns `held`)."""
-    seen = torch.from_numpy(recognised_timeline(positions)).float()
-    given = mover.plan_scaler.transform(seen.to(mover.device)).expand(len(texts), -1, -1)
-    held = held.to(mover.device).expand_as(given)
+    """Timelines for the texts that have the columns `held` of a timeline that was seen."""
+    given = mover.plan_scaler.transform(seen).expand(len(texts), -1, -1)
     loop = inpaint_steps(
-        mover.plan_denoiser(texts, len(positions)), draw(given, generator), mover.schedule, given,
-        held, steps=min(STEPS, mover.schedule.S), eta=ETA, generator=generator,
+        mover.plan_denoiser(texts, len(seen)), draw(given, generator), mover.schedule, given,
+        held.expand_as(given), steps=min(STEPS, mover.schedule.S), eta=ETA, generator=generator,
     )  # fmt: skip
     return timeline.tidied(mover.plan_scaler.inverse(final(watch(loop)).x_s))
 

@@ -5,9 +5,8 @@ Notebook: 16, 17
 """
 
 import warnings
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from typing import Any
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 import torch
@@ -16,7 +15,7 @@ from torch import Tensor
 
 from ..beyond import timeline
 from ..beyond.classifier_free import guided_by_condition
-from ..conditions.acts import apart, seconds_of
+from ..conditions.acts import USUALLY, Parts, scheduled, seconds_of
 from ..conditions.clip import ClipModel, check
 from ..conditions.text import Read
 from ..conditions.word_encoder import WordReader
@@ -63,6 +62,25 @@ def lacking(asked: tuple, positions: Float[np.ndarray, "T 21 3"]) -> list[str]:
         return []
     phrases = [[texts.Asked(a.verb, a.side, a.count, a.direction) for a in part] for part in asked]
     return texts.shortfalls(phrases, texts.actions(positions))
+
+
+def written(
+    asked: Parts, frames: int, draws: Sequence[torch.Generator]
+) -> Float[Tensor, "B {frames} 24"]:
+    """Timelines as one would write them for acts (`conditions.acts.scheduled`), one for each draw.
+
+    A planner that has seen few of the pairs, counts and orders that there are misses some of them;
+    nobody can miss them who writes them down.
+    """
+    made = []
+    for one in draws:
+        rng = np.random.default_rng(int(torch.randint(2**62, (), generator=one)))
+        timed = [
+            timeline.Timed(act.verb, act.side, act.count or USUALLY.get(act.verb, 1), first, last)
+            for act, first, last in scheduled(asked, frames / FPS, rng)
+        ]
+        made.append(timeline.timeline(timed, frames))
+    return torch.from_numpy(np.stack(made)).float()
 
 
 def until_shown(
@@ -238,8 +256,9 @@ class Mover(Performer):
         guidance  above 1 it follows the text more closely, at twice the cost
                   (`beyond.classifier_free`)
         tries     a motion that does not show what was asked for (`metrics.texts.shortfalls`) is
-                  drawn again, so often in all; the one that shows most is taken, and a warning says
-                  what is not to be seen. `notes` keep it
+                  drawn again, so often in all, by a timeline that is `written` for its acts; the
+                  one that shows most is taken, and a warning says what is not to be seen. `notes`
+                  keep it
         Raises TextError for a text that cannot be read, ValueError for numbers out of range.
         Source: MoFusion 3.
         """
@@ -261,8 +280,7 @@ class Mover(Performer):
         def draw(which: list[int], again: int) -> list[Float[np.ndarray, "T 21 3"]]:
             draws = generators(seed, count, *([again] if again else []))
             draws = [draws[k] for k in which]
-            read = replace(found, apart=again > 0)
-            return self._acts(read, frames, draws, steps, guidance, bars)
+            return self._acts(found, frames, draws, steps, guidance, bars, again > 0)
 
         acts, wrong = until_shown(found.asked, draw, count, tries)
         made = []
@@ -281,17 +299,21 @@ class Mover(Performer):
         steps: int | None,
         guidance: float,
         watch: Watch,
+        by_schedule: bool,
     ) -> list[Float[np.ndarray, "{frames} 21 3"]]:
-        """Motions for a text that was read, one for each generator, with clean feet and bones."""
+        """Motions for a text that was read, one for each generator, with clean feet and bones.
+
+        Timelines are generated, or written for the acts that were read (`written`).
+        """
         ids = self.reader.encoded([found.words] * len(draws))
         whole = -(-frames // GRID) * GRID  # as in training; what is too much is cut off
         plan = None
-        if self.can_plan:
-            plans = [
-                self.plans(one, whole, generator=draws, steps=steps, guidance=guidance, watch=watch)
-                for one in self.planned_from(found, len(draws))
-            ]
-            plan = timeline.joined(plans)
+        if self.can_plan and by_schedule:
+            plan = written(found.asked, whole, draws)
+        elif self.can_plan:
+            plan = self.plans(
+                ids, whole, generator=draws, steps=steps, guidance=guidance, watch=watch
+            )
         denoise = self.denoiser(ids, whole, guidance, plan)
         x_S = self._noise((len(draws), whole, D), draws, None)
         made = self.positions_of(
@@ -299,12 +321,6 @@ class Mover(Performer):
         )
         acts = made.double().cpu().numpy()
         return [clean_up(x, FPS, body=Body.of(x, bones=BONE_LENGTHS))[:frames] for x in acts]
-
-    def planned_from(self, found: Read, count: int) -> list[Any]:
-        """What timelines are made from: a text, or one for the legs and one for the arms."""
-        texts = apart(found.asked) if found.apart else ()
-        words = [self.reader.read(one).words for one in texts] or [found.words]
-        return [self.reader.encoded([one] * count) for one in words]
 
     @torch.no_grad()
     def act_ids(

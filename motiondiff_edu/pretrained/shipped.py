@@ -23,7 +23,7 @@ from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HIPS, TOES
 from ..performers.inbetweener import Inbetweener
-from ..performers.mover import LONGEST, SHORTEST, TRIES, Mover, until_shown
+from ..performers.mover import LONGEST, SHORTEST, TRIES, Mover, until_shown, written
 from ..performers.performer import STEPS, bar, generators
 from ..performers.walker import Walker
 from . import checkpoints
@@ -186,10 +186,11 @@ def edit(
 
     def draw(which: list[int], again: int) -> list[Float[np.ndarray, "T 21 3"]]:
         draws = generators(seed, count, *([again] if again else []))
+        draws = [draws[k] for k in which]
         made = by_words.edit_by_words(
-            mover, motion.positions, replace(found, apart=again > 0), mask,
+            mover, motion.positions, found, mask,
             strength=min(1.0, strength + again * STRONGER),
-            samples=len(which), generator=[draws[k] for k in which],
+            plan=written(found.asked, len(motion), draws) if again else None, generator=draws,
             watch=bar("editing", shown=progress),
         )  # fmt: skip
         return [clean_up(one, FPS, kept, body=body, floor=floor) for one in made]

@@ -8,7 +8,7 @@ import pytest
 from data_synth.actions.acts import VERBS, seated
 from data_synth.actions.captions import WORDINGS, caption, vocabulary, words_of
 from data_synth.actions.sentences import draw
-from motiondiff_edu.conditions.acts import KINDS, PLAIN, Act, apart, in_words, seconds_of
+from motiondiff_edu.conditions.acts import KINDS, PLAIN, Act, in_words, scheduled, seconds_of
 from motiondiff_edu.conditions.sentences import understand
 
 
@@ -177,8 +177,34 @@ def test_who_sits_and_who_stands():
         seated((Phrase(Done("walk")), Phrase(Done("rise"))))
 
 
-def test_a_pair_is_put_into_a_sentence_for_the_legs_and_one_for_the_arms():
-    for text in ("raises both arms while running", "runs while raising both arms"):
-        assert apart(understand(text).parts) == ("runs forward", "raises both arms")
-    assert apart(understand("walks, then waves").parts) == apart(understand("walks").parts) == ()
-    assert apart(understand("walks while waving, then bows").parts) == ()
+def plan_of(text: str, seconds: float, seed: int = 0) -> list[tuple]:
+    rng = np.random.default_rng(seed)
+    return [(a.verb, x, y) for a, x, y in scheduled(understand(text).parts, seconds, rng)]
+
+
+@pytest.mark.parametrize("seconds", [3.0, 6.0, 10.0])
+def test_acts_in_a_row_are_scheduled_one_after_another_within_the_time(seconds):
+    for seed in range(4):
+        for text in ("walks, then bows twice, then kicks", "kicks, then turns around, then claps"):
+            spans = plan_of(text, seconds, seed)
+            ends = [0.0, *(last for _, _, last in spans)]
+            firsts = [*(first for _, first, _ in spans), seconds]
+            assert all(e <= f for e, f in zip(ends, firsts, strict=True))
+            assert all(first < last for _, first, last in spans)
+    assert plan_of("kicks", 6, 1) != plan_of("kicks", 6, 2)
+    (_, first, last), (_, kicks, ends) = plan_of("walks, then kicks", 9.0)
+    assert first == 0 and last > 5 and ends - kicks == pytest.approx(1.35 * 1.05)
+
+
+def test_acts_at_once_are_scheduled_at_once():
+    (_, walks, stops), (_, first, last) = plan_of("walks while clapping twice", 6.0)
+    assert walks == 0 and stops == pytest.approx(6) and 0 < first < last <= 6
+    assert last - first == pytest.approx(2 * 0.65 * 1.05)
+    (_, first, last), (_, up, down) = plan_of("squats with both arms raised", 5.0)
+    assert first < up < last < down <= 5  # a held arm is seen for longer than a squat takes
+
+
+def test_who_sits_gets_up_before_the_legs_do_something_else():
+    assert [verb for verb, *_ in plan_of("sits down, then walks", 8)] == ["sit", "rise", "walk"]
+    verbs = [verb for verb, *_ in plan_of("sits down, then waves, then stands up, then bows", 10)]
+    assert verbs == ["sit", "wave", "rise", "bow"]

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import torch
+from seeds import seeded
 from small_movers import PLANNED, SMALL, mover_of, scaler_of
 
 from data_synth.actions import Act, Phrase, act_out, clips
@@ -110,7 +111,7 @@ def over_the_floor(positions: np.ndarray) -> np.ndarray:
 def test_with_the_pelvis_the_path_stays_and_a_kept_span_is_the_motion_itself(mover, positions):
     known = np.zeros((64, 21), bool)
     known[:40] = True
-    made = edit_by_words(mover, positions, "kicks", known, samples=2)
+    made = edit_by_words(mover, positions, "kicks", known, generator=[seeded(0), seeded(1)])
     assert np.array_equal(made[:, :40], np.stack([positions[:40]] * 2))
     assert np.abs(made[0, 50:] - made[1, 50:]).max() > 0.01
     held = columns(torch.from_numpy(known))
@@ -134,11 +135,34 @@ def test_the_timeline_goes_with_what_is_kept(positions):
     assert kept_columns(known)[:, legs].all() and not kept_columns(known)[:, ~legs].any()
     assert kept_columns(~known)[:, ~legs].all() and not kept_columns(~known)[:, legs].any()
     draws = [torch.Generator().manual_seed(k) for k in (0, 0)]
-    kept = _plan(mover, walk, kept_columns(known), texts, draws[0])
+    seen = torch.from_numpy(seen).float()
+    kept = _plan(mover, seen, kept_columns(known), texts, draws[0])
     assert kept[0, :, timeline.VERBS.index("walk")].mean() > 0.8
     assert not kept[0, :, timeline.VERBS.index("squat")].any()
-    free = _plan(mover, walk, kept_columns(np.zeros_like(known)), texts, draws[1])
+    free = _plan(mover, seen, kept_columns(np.zeros_like(known)), texts, draws[1])
     assert not torch.equal(kept, free)
+
+
+def test_a_given_timeline_holds_where_nothing_is_kept(positions, monkeypatch):
+    walk = act_out((Phrase(Act("walk"), Act("wave", "left")),), 4.0, 3).positions[:80]
+    mover = mover_of(PLANNED, scaler_of(to_features(walk)))
+    taken = []
+    before = type(mover).denoiser
+
+    def denoiser(self, *rest, plan):
+        taken.append(plan)
+        return before(self, *rest, plan=plan)
+
+    monkeypatch.setattr(type(mover), "denoiser", denoiser)
+    acts = [timeline.Timed("squat", "", 1, 0.5, 2.0), timeline.Timed("clap", "", 3, 0.7, 2.7)]
+    plan = torch.from_numpy(timeline.timeline(acts, 80)).float()[None]
+    for known in (np.zeros((80, 21), bool), body_part(80, "lower body")):
+        edit_by_words(mover, walk, "walks", known, plan=plan, generator=[seeded()])
+    legs = timeline.of_the_legs()
+    seen = torch.from_numpy(recognised_timeline(walk)).float()
+    assert torch.equal(taken[0], plan)
+    assert torch.equal(taken[1][0, :, legs], seen[:, legs])
+    assert torch.equal(taken[1][0, :, ~legs], plan[0, :, ~legs])
 
 
 def test_what_cannot_be_edited_is_refused(mover, positions):

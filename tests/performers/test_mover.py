@@ -12,6 +12,7 @@ from small_movers import PLANNED, SMALL, WORDS, mover_of
 import motiondiff_edu as md
 from data_synth.actions import clips
 from motiondiff_edu.beyond import timeline
+from motiondiff_edu.conditions.acts import Act
 from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.conditions.word_encoder import NOTHING, PADDING, WordEncoder, ids_of, present
 from motiondiff_edu.ddpm import cosine_schedule
@@ -22,7 +23,7 @@ from motiondiff_edu.motion.moving_frame import D, to_features, to_positions
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS
 from motiondiff_edu.performers.described_windows import DescribedWindows
-from motiondiff_edu.performers.mover import Mover
+from motiondiff_edu.performers.mover import Mover, written
 from motiondiff_edu.performers.text_mofusion import TextMoFusion
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.recipes.mover import timeline_of
@@ -115,26 +116,38 @@ def test_a_plan_is_made_tidied_and_followed(planning):
     assert (moved - planning.act_ids(ids, 40, steps=3, plan=0 * other, generator=seeded())).any()
 
 
-def test_what_is_not_shown_is_drawn_again_with_legs_and_arms_planned_apart(planning, monkeypatch):
-    asked = []
-    before = Mover.planned_from
+def test_what_is_not_shown_is_drawn_again_by_a_timeline_written_for_its_acts(planning, monkeypatch):
+    plans = []
+    before = Mover.denoiser
 
-    def planned_from(mover, found, count):
-        texts = before(mover, found, count)
-        asked.append((count, found.apart, len(texts)))
-        return texts
+    def denoiser(mover, ids, frames, guidance=1.0, plan=None):
+        plans.append(plan)
+        return before(mover, ids, frames, guidance, plan)
 
-    monkeypatch.setattr(Mover, "planned_from", planned_from)
-    how = {"seconds": 2.0, "steps": 2, "progress": False}
-    with pytest.warns(MotionWarning, match="asked: walks while waving; but .*is not to be seen"):
-        made = planning.act("walks while waving", samples=2, tries=3, **how)
-    # an untrained network shows nothing
-    assert asked == [(2, False, 1), (2, True, 2), (2, True, 2)]
-    assert all("is not to be seen" in one.notes[-1] for one in made)
+    monkeypatch.setattr(Mover, "denoiser", denoiser)
+    how = {"seconds": 3.0, "steps": 2, "progress": False}
+    text = "walks while waving with the left hand"
+    with pytest.warns(MotionWarning, match=f"asked: {text}; but .*is not to be seen"):
+        made = planning.act(text, samples=2, tries=3, **how)
+    assert all("is not to be seen" in one.notes[-1] for one in made)  # of an untrained network
+    assert len(plans) == 3 and all(plan.shape == (2, 64, timeline.D) for plan in plans)
+    for plan in plans[1:]:
+        for row in plan.numpy():
+            acts = [(one.verb, one.side) for one in timeline.acts_of(row)]
+            assert sorted(acts) == [("walk", ""), ("wave", "left")]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         planning.act("stands still", tries=3, **how)
-    assert asked[3:] == [(1, False, 1)]  # nothing is to be seen, and so nothing is missing
+    assert len(plans) == 4  # nothing is to be seen, and so nothing is missing
+
+
+def test_written_timelines_are_those_of_their_draw():
+    parts = ((Act("kick", "right", 2),), (Act("clap"),))
+    draws = [torch.Generator().manual_seed(k) for k in (1, 2, 1)]
+    first, other, again = written(parts, 160, draws)
+    assert torch.equal(first, again) and not torch.equal(first, other)
+    found = [(one.verb, one.side, one.count) for one in timeline.acts_of(first.numpy())]
+    assert found == [("kick", "right", 2), ("clap", "", 3)]
 
 
 def test_a_plan_needs_a_network_that_takes_one(planning):
