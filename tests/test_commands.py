@@ -230,6 +230,7 @@ def test_a_sentence_is_acted_and_edited_from_the_command_line(folder, capsys):
     words = ["act", "marches ahead, then squats", "--seconds", "3", "--samples", "2"]
     assert run(*words, "--seed", "4", "--out", "act.npz") == 0
     said = capsys.readouterr()
+    assert "read as: walks forward, then squats\n" in said.err
     assert "act-2.npz: 3.0 s, 60 frames" in said.out and "'marches' is read as 'walk'" in said.err
     one, two = (md.read_motion(f"act-{k}.npz").positions for k in (1, 2))
     assert np.abs(one - two).max() > 0.05

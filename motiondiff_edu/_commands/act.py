@@ -39,4 +39,4 @@ def run(args: argparse.Namespace) -> None:
         checked_length(args.seconds)
     how = {"seconds": args.seconds, "guidance": args.guidance}
     made = load("mover").act(args.text, samples=args.samples, seed=args.seed, **how)
-    outputs.write_all(made, paths, args.fps)
+    outputs.write_acts(made, paths, args.fps)

@@ -43,4 +43,4 @@ def run(args: argparse.Namespace) -> None:
     motion = outputs.read(args.file, args)
     known = body_part(len(motion), part) if part else None
     how = {"strength": args.strength, "samples": args.samples, "seed": args.seed}
-    outputs.write_all(edit(motion, args.text, known, **how), paths, args.fps)
+    outputs.write_acts(edit(motion, args.text, known, **how), paths, args.fps)

@@ -275,6 +275,12 @@ def write_all(made: object, paths: Sequence[Path], fps: float | None = None) -> 
         print(f"{path}: {motion.seconds:.1f} s, {len(motion)} frame{'s' * (len(motion) > 1)}")
 
 
+def write_acts(made: object, paths: Sequence[Path], fps: float | None = None) -> None:
+    """The same for motions made from a sentence; it says first what was read."""
+    say(f"read as: {as_list(made)[0].about}")
+    write_all(made, paths, fps)
+
+
 def say(words: str) -> None:
     """Print progress to stderr, so that stdout holds the results alone."""
     print(words, file=sys.stderr, flush=True)

@@ -4,7 +4,7 @@ What a verb does not have, such as a side or a count, is named. Notebook: 16
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from .acts import KINDS, ONE, Act, Kind
 from .idioms import LIMBS, NUMBERS, PACES, SIDES, VAGUE, WAYS
@@ -28,7 +28,7 @@ class Head:
 def take(head: Head, token: str, tokens: Sequence[str], k: int) -> bool:
     """Take a word about an act; whether it is one."""
     if token in SIDES and head.verb == "point":
-        by_limb = bool({*tokens[k + 1 : k + 3]} & LIMBS.keys())
+        by_limb = bool({*tokens[k + 1 : k + 3]} & LIMBS.keys()) or "with" in tokens[k - 2 : k]
         if by_limb or not head.side:
             head.side = SIDES[token]
         if not by_limb:
@@ -73,71 +73,96 @@ def say_of(head: Head, more: Head) -> None:
 
 def acts_of(head: Head, notes: list[str]) -> Iterator[tuple[Head, Act]]:
     """The act of a verb with what is said of it; sometimes two."""
-    verb = head.verb
-    side = head.side
-    ways = set(head.ways)
-    held = None
-    if verb == "strike":
-        verb = "kick" if "leg" in head.limbs else "punch"
-    if (
-        verb in ("walk", "run", "stand", "sit", "squat", "jump", "turn", "back", "spin")
-        and "arm" in head.limbs
-        and "up" in ways
-    ):
-        held = Act("hold", side or "both")
-        side, ways = "", ways - {"up"}
-    if verb in ("walk", "run"):
-        if "back" in ways:
-            verb = "back"
-        elif "aside" in ways or (
-            side in ONE and head.word.startswith(("step", "shuffl", "mov", "go"))
-        ):
-            verb = "aside"
-        elif "around" in ways and head.word.startswith(("turn", "fac")):
-            verb = "turn"
-    if head.word.startswith("fac") and side not in ONE and not ways & {"around", "back"}:
+    if says_no_act(head):
         notes.append(f"not understood, and left out: {head.word!r}")
         return
-    if verb == "turn" and "back" in ways and side not in ONE:
-        ways.add("around")
-    direction = ""
-    if verb == "spin":
-        verb, direction = "turn", "around"
-    if verb == "turn" and "around" in ways:
-        direction = "around"
-    if verb == "jump" and "forward" in ways:
-        direction = "forward"
-    if verb == "point":
-        direction = "aside" if "aside" in ways else "forward"
-    if verb == "hold":
-        if "up" not in ways and "arm" in head.limbs and ("forward" in ways or "aside" in ways):
-            verb, direction = "point", "aside" if "aside" in ways else "forward"
-        elif "arm" not in head.limbs and not ways:
-            notes.append(f"not understood, and left out: {head.word!r}")
-            return
-    if (
-        verb == "raise"
-        and "arm" not in head.limbs
-        and head.word.startswith(("put", "reach", "stretch"))
-    ):
-        notes.append(f"not understood, and left out: {head.word!r}")
-        return
-    kind = KINDS[verb]
-    if verb == "punch" and side == "both":
+    held = holds(head)
+    if held:
+        head = replace(head, side="", ways=[way for way in head.ways if way != "up"])
+    verb = verb_of(head)
+    kind, side = KINDS[verb], head.side
+    if head.verb == "stretch":
+        side = side or "both"
+    notes += wayless(head, verb)
+    if verb in ("punch", "kick") and side == "both":  # one after the other
         for one in ONE:
-            yield head, Act(verb, one, 0, *said(kind, head, notes))
+            count = allowed_count(verb, kind, head.count // 2, notes)
+            yield head, Act(verb, one, count, *said(kind, head, notes))
         return
     side = allowed_side(verb, kind, side, notes)
     count = allowed_count(verb, kind, 0 if head.vague and kind.most == 1 else head.count, notes)
-    if kind.part == "spot" and ways & {"aside", "back"}:
-        notes.append(f"{verb!r} has no way to the side or back, and is done on the spot")
     if kind.part == "arms" and "leg" in head.limbs and "arm" not in head.limbs:
         notes.append(f"{head.word!r} is done with the hands: the feet are left out")
     if kind.part != "arms" and "arm" in head.limbs and not held:
         notes.append(f"not understood, and left out: the arms of {verb!r}")
-    yield head, Act(verb, side, count, *said(kind, head, notes), direction)
+    yield head, Act(verb, side, count, *said(kind, head, notes), direction_of(verb, head))
     if held:
         yield Head("hold", "hold", "ing"), held
+
+
+def says_no_act(head: Head) -> bool:
+    """Whether a verb needs another word that is not there: "faces", "holds", "reaches"."""
+    around, arm = head.side in ONE or {*head.ways} & {"around", "back"}, "arm" in head.limbs
+    if head.word.startswith("fac"):
+        return not around
+    if head.verb == "hold":
+        return not arm and not head.ways
+    return head.word.startswith(("put", "reach", "stick")) and not arm
+
+
+def holds(head: Head) -> Act | None:
+    """The arms that are up during an act of the legs: "squats with both arms up"."""
+    legs = head.verb == "spin" or head.verb in KINDS and KINDS[head.verb].part != "arms"
+    up = "arm" in head.limbs and "up" in head.ways
+    return Act("hold", head.side or "both") if legs and up and head.verb != "rise" else None
+
+
+def verb_of(head: Head) -> str:
+    """What a verb is with the words about it: to step to the left is *aside*."""
+    ways, verb = {*head.ways}, head.verb
+    if verb in ("walk", "run"):
+        steps = head.word.startswith(("step", "shuffl", "mov", "go"))
+        if "back" in ways:
+            return "back"
+        if "aside" in ways or steps and head.side in ONE:
+            return "aside"
+    if verb == "strike":
+        return "kick" if "leg" in head.limbs else "punch"
+    if verb == "hold" and "arm" in head.limbs and "up" not in ways and ways & {"forward", "aside"}:
+        return "point"
+    if verb == "rise" and "arm" in head.limbs:
+        return "raise"
+    return {"spin": "turn", "stretch": "raise"}.get(verb, verb)
+
+
+def direction_of(verb: str, head: Head) -> str:
+    """The direction of a turn, a jump or a pointing arm."""
+    if verb == "turn":
+        back = "back" in head.ways and head.side not in ONE
+        return "around" if head.verb == "spin" or "around" in head.ways or back else ""
+    if verb == "jump":
+        return "forward" if "forward" in head.ways else ""
+    if verb == "point":
+        return "aside" if "aside" in head.ways else "forward"
+    return ""
+
+
+# the ways that an act can have, of those with which another act would be seen
+ONLY = {
+    "raise": ("up",), "clap": (), "punch": ("forward",), "point": ("forward", "aside"),
+    "jump": ("up", "forward"), "kick": ("up", "forward"),
+    "bow": ("forward",), "sit": ("back",), "squat": ("up",), "rise": ("up",),
+}  # fmt: skip
+IN_WORDS = {"up": "up", "forward": "forward", "aside": "to the side", "back": "back"}
+
+
+def wayless(head: Head, verb: str) -> list[str]:
+    """What to say of ways that an act does not have."""
+    if "place" in head.ways and head.verb in ("walk", "run"):
+        return [f"{head.word!r} has no way to stay on the spot, and goes along"]
+    other = {*head.ways} - {*ONLY.get(verb, IN_WORDS)}
+    wrong = [words for way, words in IN_WORDS.items() if way in other]
+    return [f"{head.word!r} has no way {way}: it is left out" for way in wrong]
 
 
 def said(kind: Kind, head: Head, notes: list[str]) -> tuple[str]:

@@ -9,11 +9,56 @@ import re
 from .acts import ONE
 from .text import PASSED_OVER
 
+WHO = (
+    r"(?:he|she|they|it|(?:the|a|an) "
+    r"(?:man|woman|person|figure|character|guy|lady|boy|girl|robot|actor|dancer))"
+)
 OWN = r"(?:(?:both|the|his|her|their|your|my|its|one's|a|one|two) )*"  # before a part of the body
 # what is rewritten before anything is read; | comes between acts in a row, & between acts at once
 REWRITTEN = tuple(
-    (re.compile(pattern.replace("{own}", OWN)), other)
+    (re.compile(pattern.replace("{own}", OWN).replace("{who}", WHO)), other)
     for pattern, other in (
+        # how words are written
+        (r"\bw(/|\b)(?=\w| )", "with "),
+        (r"\b(l|lft)\b(?= \w)", "left"),
+        (r"\b(r|rt)\b(?= \w)", "right"),
+        (r"\bfwd\b", "forward"),
+        (r"\band than\b", "and then"),
+        # what says nothing
+        (
+            r"\b(show|animate|generate|create|make|need)( me)?( an?)?( animation)?( of)? "
+            r"(?={who}\b)",
+            " ",
+        ),
+        (r"\bas (if|though)( to)?\b", " "),
+        (r"\b(to|from|on) the (far |other )?side of {own}\w+", " "),
+        (r",? \bas {who} (goes|go|moves|does so|do so|walks along)\b", " "),
+        (
+            r"\b(and |then )*(lower(s|ed|ing)?( {own}(left |right )?(arms?|hands?)| it| them)?|"
+            r"(drop|put)(s|ping|ting)? (back )?"
+            r"({own}(left |right )?(arms?|hands?)|it|them) (back )?down)"
+            r"( back)?( down)?( again)?\b",
+            " | ",
+        ),
+        (r"\b(\d+|one|two|three|four|five|ten) (s|secs?|seconds?|minutes?)\b", " so-long "),
+        (r"\b(for )?(a few|several|some|a couple of) (secs|seconds|moments)\b|\bin a row\b", " "),
+        (r"(^|[|,] *){own}(left |right )?(arms?|hands?) (back )?down\b", r"\1 "),
+        # a posture at the beginning
+        (
+            r"^((?:[\w']+ ){0,5}?)(?:is |are |was )?(?:seated|sitting|sat)(?: down)?\b"
+            r"(?=.*\b(?:ris(?:e|es|ing)|(?:get|stand|got|stood)\w* (?:back )?(?:up|to|on)))",
+            r"\1 ",
+        ),
+        # order, and at once
+        (r"\bprior to\b", " before "),
+        (r"\bhaving( first| already| just)?\b(?= \w+ed\b)", " after "),
+        (r"\bonce {who}('s|'ve| is| has| have)? (finished|done)( with)?\b", " after "),
+        (r"\bonce (?={who}\b)", " after "),
+        (r"\band after (?={who}\b)", " | "),
+        (r"^[ |]*(simultaneously|at the same time)[ |,]+(.*?) *(, and|,|\band\b)", r"\2 & "),
+        (r"^([^|]*)\b(and)\b([^|]*)\b(at the same time|simultaneously)\b", r"\1 & \3"),
+        (r"\b(and )?without (stopping|pausing|a break)\b", " & "),
+        (r"^(\w+ing\b[^,|&]*), *(?={who}\b(?! then))", r"\1 & "),
         (r"\b(but|and) (first|before (that|this|it))\b,?", " before-it "),
         (r"\bbefore (that|this|it)\b,?", " before-it "),
         (
@@ -26,7 +71,6 @@ REWRITTEN = tuple(
             r"\b(no,? )?wait,? no\b|\bno,? wait\b|\bi mean\b|\bscratch that\b|\bor rather\b",
             " i-mean ",
         ),
-        (r"\bonce (he|she|it|they)('s|'ve| is| has| have)? (finished|done)( with)?\b", " after "),
         (
             r"\bfirst(ly)?\b,?|\bto (start|begin) with\b,?|"
             r"\b(start|begin)(s|ing|ning)?( off| out)?( by| with| to)?\b",
@@ -58,6 +102,46 @@ REWRITTEN = tuple(
         ),
         (r"\bturn(s|ing)? about\b", " turn around "),
         (r"\b(not|without) moving\b", " "),
+        (r"\bstop(s|ping)? (moving|walking|running|going)\b", " stand "),
+        (
+            r"\bsquat(s|ting)?( down)? (and|then) (come|get|go|stand)(s|ing)? (back )?up\b",
+            " squat ",
+        ),
+        (r"\bcrab[- ]?walk(s|ing)?\b", " step sideways "),
+        (r"\bthrow(s|ing)? a (left|right)\b(?! (arm|leg|hand))", r" punch \2 "),
+        (r"(?<!in a )\bhurr(y|ies|ying)\b", " walk quickly "),
+        (r"\bpaces\b(?= (forward|back|around|up|about|across))", " walks "),
+        (
+            r"\b(arms?|hands?) (go|goes|come|comes|shoots?|fly|flies) (straight |all the way )?"
+            r"up\b",
+            r" raise \1 ",
+        ),
+        (r"\bback and forth\b|\bto and fro\b", " back-and-forth "),
+        (
+            r"\bon (just |only )?(one|a single|his|her|their|the (left|right)) (leg|foot)\b",
+            " on-one-leg ",
+        ),
+        (
+            r"\b(straighten|come|push)(s|ing)? (back |right )?up( again| straight| tall)?\b(?! to)",
+            " rise ",
+        ),
+        (r"\bstraighten(s|ing)?( {own}(back|body|self))?( out)?\b", " rise "),
+        (
+            r"\b(and |then )*(do(es|ing)?|repeat(s|ing)?) (it|that|this|the same( thing)?)"
+            r"( all)?( (over )?again| once more| one more time)*\b|"
+            r"\b(and |then )*repeat(s|ing)?\b|\b(and |then )*(the )?same( again)? (?=with|on)",
+            " | again-it ",
+        ),
+        (r"\bone more time\b|\bonce (more|again)\b|\banother time\b", " again "),
+        (
+            r"\b(reach|stretch)(es|ing)? (up |out )*(high |tall )*(for|to|toward|towards) the "
+            r"(sky|ceiling|stars|sun)\b|\b(reach|stretch)(es|ing)? (up|high|tall)\b",
+            " stretch up ",
+        ),
+        (
+            r"\b(with )?(each|alternating|alternate) {own}(arms?|hands?|legs?|foot|feet|fists?)\b",
+            r" both \3 ",
+        ),
         (r"\bin a (hurry|rush)\b", " quickly "),
         (r"\blike\b(?! an?\b)|\bhow about\b|\bfor a (moment|while|second|bit)\b", " "),
         (r"\b(ends?|finish(es)?) (up )?(by|with)\b", " | "),
@@ -73,9 +157,11 @@ REWRITTEN = tuple(
         (r"\b(a couple of|a pair of|couple of|double)\b", " twice "),
         (r"\b(a few|several|some|multiple|many) times\b", " some-times "),
         (r"\b(\d+)\s*(x|times)\b|\bx\s*(\d+)\b", r" \1\3 times "),
-        (r"\bon {own}(spot|place)\b|\bin place\b", " "),
+        (r"\bon {own}(spot|place)\b|\bin place\b", " on-the-spot "),
         (
-            r"\bhalf (a )?turn\b|\bhalf[- ]?way (a)?round\b|\b180( degrees?)?\b|\babout[- ]face\b",
+            r"\b((turn|spin|rotate)(s|ing)? )?"
+            r"(half (a )?turn|half[- ]?way (a)?round|(by )?180( degrees?)?)\b|"
+            r"\babout[- ](face|turn)\b|\bu[- ]turn\b",
             " turn around ",
         ),
         (r"\bhalf round\b", " around "),
@@ -87,7 +173,7 @@ REWRITTEN = tuple(
         (r"\b(gets?|getting) (back )?(on|to) {own}feet\b", " rise "),
         (r"\b(go|come|get)(es|s|ing)? (back )?(down|up)\b", r" \1-\4 "),
         (r"\b(stands?|standing) (still|motionless)\b", " stand "),
-        (r"\b(tak|hav|grab)(es?|s|ing) a seat\b|\b(is |be |gets? )?seated\b", " sit "),
+        (r"\b(tak|hav|grab)(es?|s|ing) (a|{own}) ?seat\b|\b(is |be |gets? )?seated\b", " sit "),
         (r"\b(hands?|arms?) (together) in a clap\b", " clap "),
         (r"\bup in a kick\b", " "),
         (r"\bback(s|ing|ed)? (away|up|off)\b", " walk backwards "),
@@ -118,14 +204,14 @@ REWRITTEN = tuple(
         (
             r"\bwith {own}(left |right )?(arm|hand)(s?) "
             r"(?:(?:held|kept|stretched) )?(?:raised|up|overhead|high)(?: up| high| overhead)?\b",
-            lambda m: f" & hold-{(m[1] or m[3] or '').strip()} ",
+            lambda m: f" hold-{(m[1] or m[3] or '').strip()} ",
         ),
         (
             r"(^|[|,&]|\band\b)\s*{own}(left |right )?(arm|hand)(s?) "
             r"(?:raised|up|overhead|high)\b",
             lambda m: f"{m[1]} & hold-{(m[2] or m[4] or '').strip()} ",
         ),
-        (r"^(.*)\band\b(.*) together\b", r"\1 & \2"),
+        (r"^(.*)\band\b(?!.*(?:hands|palms|arms) together)(.*) together\b", r"\1 & \2"),
         (
             r"(\bturn(?:s|ing)? a?round\b.*?\b(?:walk|run|jog|go|stroll)(?:e?s|ing)?) back\b",
             r"\1 forward",
@@ -134,13 +220,18 @@ REWRITTEN = tuple(
     )
 )
 HEADS = {
-    **dict.fromkeys("walk stroll stride amble wander go move step travel advance".split(), "walk"),
+    **dict.fromkeys(
+        "walk stroll stride amble wander go move step travel advance enter exit leave"
+        " approach".split(),
+        "walk",
+    ),
     **dict.fromkeys("run jog race sprint dash".split(), "run"),
     "retreat": "back",
+    "strafe": "aside",
     "shuffle": "walk",
     **dict.fromkeys("turn rotate pivot face".split(), "turn"),
     **dict.fromkeys("spin twirl whirl".split(), "spin"),
-    **dict.fromkeys("stand wait stay pause stop halt freeze".split(), "stand"),
+    **dict.fromkeys("stand wait stay pause stop halt freeze idle".split(), "stand"),
     **dict.fromkeys("squat crouch".split(), "squat"),
     **dict.fromkeys("jump hop leap spring bounce".split(), "jump"),
     "kick": "kick",
@@ -148,7 +239,8 @@ HEADS = {
     "rise": "rise",
     **dict.fromkeys("bow stoop".split(), "bow"),
     **dict.fromkeys("wave signal greet".split(), "wave"),
-    **dict.fromkeys("raise lift reach stretch put".split(), "raise"),
+    **dict.fromkeys("raise lift reach put stick".split(), "raise"),
+    "stretch": "stretch",
     **dict.fromkeys("hold keep have has hold- hold-s hold-left hold-right".split(), "hold"),
     **dict.fromkeys("punch jab hit box uppercut".split(), "punch"),
     "strike": "strike",
@@ -182,6 +274,7 @@ WAYS = {
     **dict.fromkeys("sideways side aside sideward laterally sidewards".split(), "aside"),
     **dict.fromkeys("around round".split(), "around"),
     **dict.fromkeys("up upward upwards overhead raised high".split(), "up"),
+    "on-the-spot": "place",
 }
 LIMBS = {
     **dict.fromkeys("hand hands arm arms fist fists palm palms".split(), "arm"),
@@ -193,7 +286,8 @@ FILLERS = PASSED_OVER | frozenset(
     " proudly casually lightly softly nicely bit motion movement spot floor ground own way himself"
     " herself itself themselves still same then more please pls thanks thx let make together ok"
     " okay so um uh hmm well maybe away off over excitedly"
-    " enthusiastically cheerfully joyfully".split()
+    " enthusiastically cheerfully joyfully again-it another rather good nice across room stage"
+    " street second towards toward using super normal throughout".split()
 )
 # counts that are not meant exactly: steps of a walk are not counted
 VAGUE = frozenset("few several some-times".split())
@@ -211,7 +305,7 @@ def rewritten(text: str) -> str:
     low = re.sub(r"[.;!?:\n]+", " | ", low)
     for pattern, other in REWRITTEN:
         low = " ".join(pattern.sub(other, low).split())
-    return other_side(in_their_order(low))
+    return re.sub(r"\|[| ]*&", "&", other_side(in_their_order(low)))
 
 
 def in_their_order(low: str) -> str:
@@ -222,8 +316,9 @@ def in_their_order(low: str) -> str:
             low = f"{pieces[first]} | {pieces[1 - first]}"
         elif len(pieces) == 2:
             low = pieces[1].replace(",", " | ", 1)
-    match = re.match(r"[ |,]*before\b([^,|]*),(.*)", low)
-    low = f"{match[2]} | {match[1]}" if match else low
+    for later in (r"([^,|]*),(.*)", rf"([^,|]+?) (?={WHO}\b)(.*)"):  # "before he sits he bows"
+        match = re.match(rf"[ |,]*before\b{later}", low)
+        low = f"{match[2]} | {match[1]}" if match else low
     return re.sub(r"\bbefore\b", " | ", low)
 
 
@@ -231,12 +326,10 @@ def other_side(low: str) -> str:
     """With "left" or "right" in place of "the other hand"."""
     last, words = "", low.split()
     for k, word in enumerate(words):
-        last = word if word in ONE else last
-        if (
-            word == "other"
-            and last
-            and words[k + 1 : k + 2]
-            and words[k + 1] in {*LIMBS, "side", "one"}
-        ):
+        after = words[k + 1] if k + 1 < len(words) else "|"
+        if word == "one" and after in LIMBS and "other" in words[k:]:
+            words[k] = word = ONE[1]
+        last = word.strip(",") if word.strip(",") in ONE else last
+        if word == "other" and last and after.strip(",") in {*LIMBS, "side", "one", "|", "&", ""}:
             words[k] = last = ONE[1 - ONE.index(last)]
     return " ".join(words)

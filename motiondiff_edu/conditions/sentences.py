@@ -14,24 +14,11 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from .acts import KINDS, ONE, Act, Parts
-from .heads import Head, acts_of, say_of, take
-from .idioms import (
-    ADDRESSED,
-    FILLERS,
-    HEADS,
-    LIMBS,
-    NUMBERS,
-    PACES,
-    SIDES,
-    THINGS,
-    TOWARDS,
-    WAYS,
-    WHOSE,
-    rewritten,
-)
-from .text import base_forms
-from .verbs import head_of, is_light, meant
+from .acts import KINDS, Act, Parts
+from .heads import Head, take
+from .idioms import LIMBS, NUMBERS, SIDES, rewritten
+from .pieces import acts_in
+from .verbs import is_light
 
 ONWARD = ("walk", "run", "back")  # what arms are moved along with, for "walks and waves"
 
@@ -50,8 +37,38 @@ def understand(text: str) -> Understood:
     clauses = [" ".join(clause.split()) for clause in rewritten(text).split("|")]
     parts: list[tuple[Act, ...]] = []
     for clause in filter(None, clauses):
-        parts += parts_of(clause, notes) or again(clause, parts)
-    return Understood(tuple(counted_together(parts)), tuple(dict.fromkeys(notes)))
+        said = len(notes)
+        more = parts_of(clause, notes) or again(clause, parts)
+        if not more and len(notes) == said and says_something(clause):
+            notes.append(f"not understood: {clause!r}")
+        parts += more
+    return Understood(tuple(counted_together(in_one_flow(parts))), tuple(dict.fromkeys(notes)))
+
+
+def says_something(clause: str) -> bool:
+    """Whether words about an act, or verbs that say nothing by themselves, are in a clause."""
+    about = SIDES.keys() | NUMBERS.keys() | LIMBS.keys()
+    return any(word in about or is_light(word) for word in re.findall(r"[\w-]+", clause))
+
+
+def in_one_flow(parts: Sequence[tuple[Act, ...]]) -> list[tuple[Act, ...]]:
+    """The same without what goes without saying: getting up from a squat or a bow, sitting of who
+    sits already ("sits, then claps while sitting"), a walk that only goes on ("... as she walks").
+    """
+    found: list[tuple[Act, ...]] = []
+    legs, seated = "", False
+    for part in parts:
+        if seated and len(part) == 2:
+            part = tuple(act for act in part if act.verb != "sit")
+        own = [act.verb for act in part if KINDS[act.verb].part != "arms"]
+        if part == (Act("rise"),) and legs in ("squat", "bow"):
+            continue
+        if len(part) == 2 and found and found[-1] == tuple(a for a in part if a.verb in ONWARD):
+            found.pop()
+        found.append(part)
+        legs = own[-1] if own else legs
+        seated = legs == "sit"
+    return found
 
 
 def counted_together(parts: Sequence[tuple[Act, ...]]) -> list[tuple[Act, ...]]:
@@ -69,11 +86,25 @@ def counted_together(parts: Sequence[tuple[Act, ...]]) -> list[tuple[Act, ...]]:
 
 
 def again(clause: str, parts: list[tuple[Act, ...]]) -> list[tuple[Act, ...]]:
-    """The last act with another side, for "..., then with the right"; else nothing."""
-    sides = [SIDES[word] for word in clause.split() if SIDES.get(word)]
-    if not parts or not sides or sides[0] not in KINDS[parts[-1][-1].verb].sides:
+    """The last act once more, with another side if one is named; else nothing.
+
+    "..., then with the right", "..., then does it again"
+    """
+    words = clause.split()
+    said = Head("", "")
+    for k, word in enumerate(words):
+        take(said, word, words, k)
+    once_more = {"again-it", "another", "more", "again"} & {*words}
+    if not parts or not (once_more or said.side or said.count or said.speed):
         return []
-    return [(replace(parts[-1][-1], side=sides[0]),)]
+    *others, last = parts[-1]
+    kind = KINDS[last.verb]
+    if said.side and said.side not in kind.sides or said.speed and said.speed not in kind.speeds:
+        return []
+    way = next((way for way in said.ways if way in kind.directions), last.direction)
+    count = said.count if 0 < said.count <= kind.most else last.count
+    more = replace(last, count=count, direction=way)
+    return [(*others, replace(more, side=said.side or last.side, speed=said.speed or last.speed))]
 
 
 def parts_of(clause: str, notes: list[str]) -> list[tuple[Act, ...]]:
@@ -123,127 +154,3 @@ def at_once(first: tuple[Act, ...], second: tuple[Act, ...]) -> list[tuple[Act, 
     if len(acts) == 2 and len(legs) == 1:
         return [(legs[0], next(act for act in acts if act is not legs[0]))]
     return [first, second]
-
-
-def acts_in(piece: str, notes: list[str]) -> list[tuple[Head, Act]]:
-    """The acts of a piece without "while", in their order."""
-    tokens = re.findall(r"[a-z]+(?:[-'][a-z]*)*|\d+|,", piece)
-    heads: list[Head] = []
-    before = Head("", "")  # what is said before its verb
-    unknown: list[str] = []
-    subject: list[str] = []
-    joined = ""
-    for k, token in enumerate(tokens):
-        if token.startswith("hold-"):
-            one = token.removeprefix("hold-")
-            heads.append(
-                Head("hold", token, "ing", one if one in ONE else "both" if one else "right")
-            )
-            heads[-1].ways, heads[-1].limbs = ["up"], ["arm"]
-            before, joined = Head("", ""), ""
-            continue
-        if token in (",", "and"):
-            joined = "," if "," in (token, joined) else "and"
-            give_back(before, heads)
-            if not heads:
-                subject = []  # "juggles and walks": what comes before "and" was no subject
-            before = Head("", "")
-            continue
-        verb = head_of(token, tokens[k + 1 : k + 2], notes)
-        if verb and token in THINGS and tokens[max(k - 1, 0)] in ("a", "the"):
-            verb = ""  # "picks up a box"
-        if verb and heads and named_again(verb, heads[-1], tokens[:k]):
-            say_of(heads[-1], before)
-            before = Head("", "")
-            continue
-        if verb:
-            participle = token.endswith("ing") and joined != "and"
-            head = Head(verb, token, "ing" if participle else joined)
-            if plural(tokens, k):
-                head.count, head.vague = 2, True
-            say_of(head, before)
-            heads.append(head)
-            before, joined = Head("", ""), ""
-            continue
-        target = before if leads(tokens, k) or not heads else heads[-1]
-        if take(target, token, tokens, k) or token in FILLERS or is_light(token):
-            continue
-        near = meant(token)
-        if near:
-            notes.append(f"{token!r} is read as {near!r}")
-            take(target, near, tokens, k)
-            continue
-        if not addressed(tokens, k, heads):
-            unknown.append(token)
-            who = not heads and not token.endswith("ing") and token != "i-mean"
-            subject += [token] if who else []
-    give_back(before, heads)
-    if not heads and before.limbs and "up" in before.ways:  # "arms up"
-        heads.append(replace(before, verb="hold"))
-    acts = [act for head in heads for act in acts_of(head, notes)]
-    if heads:  # what stands before the first verb is who does it
-        unknown = [word for word in unknown if word not in subject]
-    if unknown:
-        left = "not understood, and left out" if heads else "not understood"
-        words = [repr(word.replace("-", " ")) for word in dict.fromkeys(unknown)]
-        notes.append(f"{left}: {', '.join(words)}")
-    return acts
-
-
-def plural(tokens: Sequence[str], k: int) -> bool:
-    """Whether a verb is a noun in the plural: "does squats", "quick punches"."""
-    before = list(tokens[:k])
-    quick = bool(before) and before[-1] in PACES and not before[-1].endswith("ly")
-    while before and before[-1] in (*SIDES, *PACES, "some"):
-        before.pop()
-    return tokens[k].endswith("s") and (quick or bool(before) and is_light(before[-1]))
-
-
-def named_again(verb: str, last: Head, before: Sequence[str]) -> bool:
-    """Whether a word names the act of the last verb: "greets her with a wave", "goes two steps"."""
-    while before and before[-1] in (*SIDES, *PACES, *WAYS, "very"):
-        before = before[:-1]
-    if last.verb == verb == "walk":
-        return bool(before) and (
-            before[-1] in ("a", "one") or before[-1] in NUMBERS or before[-1].isdigit()
-        )
-    return last.verb == verb and tuple(before[-2:]) in (("with", "a"), ("in", "a"))
-
-
-def addressed(tokens: Sequence[str], k: int, heads: Sequence[Head]) -> bool:
-    """Whether a word says at whom somebody waves, bows, claps or points."""
-    if not heads or heads[-1].verb not in ADDRESSED:
-        return False
-    before = list(tokens[:k])
-    while before and before[-1] in WHOSE:
-        before.pop()
-    return bool(before) and before[-1] in TOWARDS
-
-
-def leads(tokens: Sequence[str], k: int) -> bool:
-    """Whether a word belongs to a verb after it: nothing but such words lie between."""
-    for token in tokens[k + 1 :]:
-        if token in ("and", ",", "with", "to", "the", "of"):
-            return False
-        if (
-            token in SIDES
-            or token in NUMBERS
-            or token in PACES
-            or token.isdigit()
-            or token in ("a", "an", "very", "times", "quick")
-        ):
-            continue
-        if token in WAYS or token in LIMBS:
-            return False
-        return bool(HEADS.get(token) or any(form in HEADS for form in base_forms(token)))
-    return False
-
-
-def give_back(more: Head, heads: list[Head]) -> None:
-    """Words that no verb came after belong to the verb before them."""
-    if heads:
-        last = heads[-1]
-        if more.limbs and "up" in more.ways and KINDS.get(last.verb, KINDS["walk"]).part != "arms":
-            heads.append(replace(more, verb="hold", joined="ing"))
-            return
-        say_of(last, more)

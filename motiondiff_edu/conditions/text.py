@@ -127,6 +127,8 @@ def base_forms(word: str) -> Iterator[str]:
     """
     if word in IRREGULAR:
         yield IRREGULAR[word]
+    if word.endswith(("ies", "ied")):
+        yield word[:-3] + "y"
     for ending in ("s", "es", "ing", "ed", "d", "ly"):
         stem = word.removesuffix(ending)
         if stem == word or len(stem) < 2:

@@ -56,7 +56,8 @@ def spelled() -> list[str]:
     found = []
     for word in HEADS:
         stem = word.removesuffix("e")
-        found += [word, word + "s", stem + "ing", stem + word[-1] + "ing", stem + "ed"]
+        ending = "es" if word.endswith(("s", "x", "ch", "sh")) else "s"
+        found += [word, word + ending, stem + "ing", stem + word[-1] + "ing", stem + "ed"]
     return found
 
 

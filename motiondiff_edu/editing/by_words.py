@@ -57,7 +57,8 @@ def edit_by_words(
     plan      timelines of what is not kept (default: generated), for a mover that plans
     watch     gets each sampling loop, and shows how far it is
     Of each generator comes one motion; without any the seed is 0. The first frame stays where it
-    was, facing the same way. While the pelvis is known from the first frame on, known joints come back bit by bit.
+    was, facing the same way. While the pelvis is known from the first frame on, known joints come
+    back bit by bit.
     Raises TextError for a text that cannot be read, ValueError for a strength out of range, for
     positions that are not finite, and for another mask than T x 21 of True and False.
     """

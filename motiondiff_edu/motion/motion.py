@@ -40,7 +40,8 @@ class Motion:
         audio     mono sound from -1 to 1; it begins with the first frame. It needs its
                   `sample_rate` in Hz
         source    where the motion comes from
-        about     how it was read: its axes, its unit, whether it stands on the floor
+        about     how a file was read: its axes, its unit, whether it stands on the floor;
+                  or a sentence: what was understood
         notes     what was mended in it, or is doubtful
     Raises MotionError, with frame and joint, for arrays that do not fit.  Notebook: 00
     """

@@ -15,7 +15,7 @@ from torch import Tensor
 
 from ..beyond import timeline
 from ..beyond.classifier_free import guided_by_condition
-from ..conditions.acts import USUALLY, Parts, scheduled, seconds_of
+from ..conditions.acts import USUALLY, Parts, in_words, scheduled, seconds_of
 from ..conditions.clip import ClipModel, check
 from ..conditions.text import Read
 from ..conditions.word_encoder import WordReader
@@ -245,7 +245,8 @@ class Mover(Performer):
     ) -> Motion | list[Motion]:
         """Do what a sentence says, such as "walks forward, then waves with the left hand".
 
-        The figure begins at the origin, facing z. Its bones have constant lengths, and feet that
+        `about` of the motion says in plain words what was read. The figure begins at the origin,
+        facing z. Its bones have constant lengths, and feet that
         stand do not slide (`motion/cleanup`; `act_ids` has the network's own). A warning
         says which words were read as others; there is none for a text that `reader.read` has read
         already (its `notes` say the same).
@@ -288,7 +289,8 @@ class Mover(Performer):
             notes = (f"asked: {found.text:.80}; but {'; '.join(words)}",) if words else ()
             for note in notes:
                 warnings.warn(note, MotionWarning, stacklevel=2)
-            made.append(Motion(act, FPS, source=f"{found.text:.60}", notes=(*found.notes, *notes)))
+            notes, about = (*found.notes, *notes), in_words(found.asked)
+            made.append(Motion(act, FPS, source=f"{found.text:.60}", notes=notes, about=about))
         return made if samples > 1 else made[0]
 
     def _acts(

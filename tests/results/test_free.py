@@ -11,7 +11,7 @@ import pytest
 from data_synth.actions import Act, Phrase, act_out
 from motiondiff_edu.beyond import timeline
 from motiondiff_edu.conditions.text import TextError
-from motiondiff_edu.metrics.texts import actions
+from motiondiff_edu.metrics.texts import Recognised, actions
 from motiondiff_edu.motion.motion import MotionWarning
 from tools.results.words import free
 from tools.results.words.second import times_of
@@ -54,6 +54,13 @@ KICKS = {"text": "kicks twice", "steps": [[{"verb": "kick", "count": 2}]], "beyo
 def test_a_sentence_is_right_refused_or_unsaid(mover, record, right, refused, unsaid):
     found = free.tried(mover, KICKS | record, actions, 0)
     assert (found.right, found.refused, found.unsaid) == (right, refused, unsaid)
+
+
+def test_steps_are_not_counted():
+    steps = [Recognised("back", "", 1, "", 0.0, 2.0), Recognised("kick", "left", 1, "", 2.0, 3.0)]
+    for verb, missing in (("back", []), ("kick", ["'kick' is to be seen 1 times"])):
+        record = {"beyond": [], "steps": [[{"verb": verb, "min_count": 2}]]}
+        assert free.missing_of(record, steps) == missing
 
 
 def test_the_sentences_ask_for_acts_that_there_are():

@@ -29,7 +29,7 @@ from data_synth.actions import clips
 from motiondiff_edu.beyond import timeline
 from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.editing.masks import body_part
-from motiondiff_edu.metrics.texts import Asked, Recognised, actions, shortfalls
+from motiondiff_edu.metrics.texts import COUNTED, Asked, Recognised, actions, shortfalls
 from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.pretrained import checkpoints
@@ -93,6 +93,8 @@ def missing_of(record: dict, found: list[Recognised]) -> list[str]:
     words = list(record["beyond"])
     words += shortfalls(asked_of(record), found)
     for act in (act for step in record["steps"] for act in step if "min_count" in act):
+        if act["verb"] not in COUNTED:  # steps are not counted
+            continue
         times = [one.count for one in found if one.verb == act["verb"]]
         if times and max(times) < act["min_count"]:
             words.append(f"{act['verb']!r} is to be seen {max(times)} times")
