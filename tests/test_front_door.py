@@ -211,6 +211,19 @@ def test_play_shows_several_side_by_side(walked, tmp_path, capsys):
     assert [figure["label"] for figure in figures] == ["a", "b", "c"]
 
 
+def test_notes_are_below_the_player_each_with_the_name_of_its_motion(walked, tmp_path):
+    one = replace(walked, notes=("mended", "mended", "doubtful"))
+    assert shown.player_of([walked]).notes == []
+    assert shown.player_of([one]).notes == ["mended", "doubtful"]
+    other = replace(walked, source="", notes=("sunk", "mended"))
+    several = shown.player_of([one, other]).notes
+    names = f"{walked.source}, figure 2"
+    assert several == [f"{names}: mended", f"{walked.source}: doubtful", "figure 2: sunk"]
+    assert shown.player_of([one, walked], ["a", "b"]).notes[0] == "a: mended"
+    odd = replace(walked[:5], notes=("</script><b>",)).save(tmp_path / "odd.html")
+    assert '"notes": ["\\u003c/script>\\u003cb>"]' in odd.read_text("utf-8")
+
+
 def test_contacts_are_not_drawn_at_the_joints_of_another_skeleton(walked):
     contacts = np.ones((len(walked), 2), bool)
     (ours,) = shown.player_of([replace(walked, contacts=contacts)]).scene["figures"]
@@ -263,7 +276,28 @@ def test_in_betweens_that_jump_are_made_again(better, said, walked, monkeypatch)
     with pytest.warns(MotionWarning, match=f"between frames 20 and 40, where 1.* m/s.*{said}"):
         made = md.inbetween(walked, md.keyframes(walked), progress=False)
     assert np.array_equal(made.positions, walked.positions) == better
+    assert "between frames 20 and 40, where 1" in made.notes[0] and said in made.notes[0]
     assert set(drawn) == {"inbetweener"} and len(drawn) == (2 if better else DRAWS + len(CALMER))
+
+
+def test_in_betweens_note_where_they_leave_what_was_given(walked, monkeypatch):
+    """A hand is raised between two keyframes in one sample of two; the other is as given."""
+
+    def raised(inbetweener, positions, known, *, samples, **_):
+        made = np.stack([positions] * samples)
+        made[-1, 20:41, joint_index("RightHand"), 1] += np.sin(np.linspace(0, np.pi, 21))
+        return made
+
+    monkeypatch.setattr(Inbetweener, "fill", raised)
+    monkeypatch.setattr(shipped, "clean_samples", lambda made, *_: made)
+    told = replace(walked, notes=("the feet were planted anew",))
+    with pytest.warns(MotionWarning) as warned:
+        good, other = md.inbetween(told, md.keyframes(walked), samples=2, progress=False)
+    assert good.notes == told.notes
+    before, reach = other.notes
+    assert reach.startswith("RightHand goes ") and " above where the given motion " in reach
+    assert (before,) == told.notes
+    assert [str(one.message) for one in warned] == [f"{other.name}: {reach}"]
 
 
 @pytest.mark.parametrize(
@@ -357,7 +391,8 @@ def test_bones_that_are_nowhere_given_suit_the_others(walked, part):
 def test_what_is_known_of_nothing_is_noted(walked):
     nothing = np.zeros_like(walked.known)
     with pytest.warns(MotionWarning, match="no joint is known, so the result has nothing to do"):
-        md.inbetween(walked, nothing, steps=2, progress=False)
+        made = md.inbetween(walked, nothing, steps=2, progress=False)
+    assert made.notes == ("no joint is known, so the result has nothing to do with this motion",)
 
 
 def test_a_jump_from_one_part_to_the_next_is_told(walked):

@@ -1,9 +1,10 @@
-"""Where a generated motion leaves the one that it was made from: reach, speed, floor.
+"""Where a generated motion leaves the one that it was made from: reach, speed, floor, seams.
 
 A continuation that raises a hand which hung in all of the past invents a gesture; a foot that is
-twice as fast as any of the given frames jumps. Such a result may be right, but whoever made it
-should look. Heights and reaches are about the pelvis, in the heading of the body, so that the way
-that the figure takes does not matter.
+twice as fast as any of the given frames jumps, and so does one that goes far between a given and a
+generated frame. Such a result may be right, but whoever made it should look. Heights and reaches
+are about the pelvis, in the heading of the body, so that the way that the figure takes does not
+matter.
 Ours.
 """
 
@@ -11,7 +12,8 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from ..motion.root_frame import FPS, body_heading, forward_left
-from ..motion.skeleton import HIPS, JOINTS, joint_index
+from ..motion.skeleton import HIPS, JOINTS, TOES, joint_index
+from .keyframes import seam_step
 
 Points = Float[np.ndarray, "T 21 3"]
 Given = Float[np.ndarray, "N 21 3"]
@@ -19,7 +21,10 @@ ENDS = [joint_index(side + part) for side in ("Left", "Right") for part in ("Han
 WAYS = ("above", "ahead of", "to the side of")  # of where the given motion has it
 REACH = (0.3, 0.35, 0.35)  # metres, in these directions, before it is told
 SPEED, FAST = 1.6, 4.0  # times the fastest of the given motion, and at least so many m/s
+SECOND = 1.0  # s of a toe in neighbouring frames. Keyframes have less: then no speed is judged,
+POSES = 1.5  # and the limit is so many times REACH
 UNDER = 0.05  # metres: deeper than this a joint is in the floor
+JUMP = 0.1  # metres in a frame; at keyframes a second apart recordings have 0.07 at most
 
 
 def strays(made: Points, given: Given, new: Bool[np.ndarray, "T 21"] | None = None) -> list[str]:
@@ -28,7 +33,7 @@ def strays(made: Points, given: Given, new: Bool[np.ndarray, "T 21"] | None = No
     new   True for what was generated (default: all); the rest is not judged
     """
     new = np.ones(made.shape[:2], bool) if new is None else new
-    return [words for ask in (reach, speed, floor) if (words := ask(made, given, new))]
+    return [words for ask in (reach, speed, floor, seam) if (words := ask(made, given, new))]
 
 
 def about_the_pelvis(points: Points) -> Points:
@@ -50,29 +55,38 @@ def with_height(flat: Float[np.ndarray, "T 2"]) -> Float[np.ndarray, "T 3"]:
     return np.stack([flat[:, 0], 0 * flat[:, 0], flat[:, 1]], -1)
 
 
+def has_steps(given: Given) -> bool:
+    """Whether a toe is given for a second in neighbouring frames; keyframes are poses alone."""
+    toes = np.isfinite(given[:, list(TOES)]).all(-1)
+    return bool((toes[1:] & toes[:-1]).any(1).sum() >= SECOND * FPS)
+
+
 def reach(made: Points, given: Given, new: Bool[np.ndarray, "T 21"]) -> str:
-    """A hand or foot that goes much farther than in any given frame."""
+    """A hand or foot that goes much farther than in any given frame, a foot than either foot."""
     had = about_the_pelvis(given)[:, ENDS]
     most = np.where(np.isfinite(had), had, -np.inf).max(0)
-    beyond = about_the_pelvis(made)[:, ENDS] - most - REACH
+    most[1::2] = most[1::2].max(0)  # keyframes as far apart as steps show each foot on one side
+    limits = np.array(REACH) * (1 if has_steps(given) else POSES)
+    beyond = about_the_pelvis(made)[:, ENDS] - most - limits
     judged = new[:, ENDS, None] & np.isfinite(beyond) & np.isfinite(most)
     beyond = np.where(judged, beyond, -np.inf)
     frame, joint, way = np.unravel_index(int(beyond.argmax()), beyond.shape)
     if not beyond[frame, joint, way] > 0:
         return ""
-    far = 100 * (beyond[frame, joint, way] + REACH[way])
+    far = 100 * (beyond[frame, joint, way] + limits[way])
+    what = "a foot" if joint % 2 else "it"
     return (
-        f"{JOINTS[ENDS[joint]]} goes {far:.0f} cm {WAYS[way]} where the given motion ever has it "
-        f"({frame / FPS:.1f} s)"
+        f"{JOINTS[ENDS[joint]]} goes {far:.0f} cm {WAYS[way]} where the given motion ever has "
+        f"{what} ({frame / FPS:.1f} s)"
     )
 
 
 def speed(made: Points, given: Given, new: Bool[np.ndarray, "T 21"]) -> str:
-    """A joint that is much faster than any of the given motion."""
-    if len(made) < 2:
+    """A joint that is much faster than any of the given motion, if that has steps."""
+    if len(made) < 2 or not has_steps(given):
         return ""
     steps = np.linalg.norm(np.diff(made, axis=0), axis=-1) * FPS
-    had = np.nanmax(np.linalg.norm(np.diff(given, axis=0), axis=-1), initial=0.0) * FPS
+    had = np.nanmax(np.linalg.norm(np.diff(given, axis=0), axis=-1)) * FPS
     steps = np.where((new[1:] | new[:-1]) & np.isfinite(steps), steps, 0.0)
     frame, joint = np.unravel_index(int(steps.argmax()), steps.shape)
     fastest = steps[frame, joint]
@@ -85,7 +99,9 @@ def speed(made: Points, given: Given, new: Bool[np.ndarray, "T 21"]) -> str:
 
 
 def floor(made: Points, given: Given, new: Bool[np.ndarray, "T 21"]) -> str:
-    """A joint deep under the lowest one of the given motion."""
+    """A joint deep under the lowest one of the given motion, if that has a toe."""
+    if not np.isfinite(given[:, list(TOES)]).any():
+        return ""
     depth = np.nanmin(given[..., 1]) - made[..., 1]
     depth = np.where(new & np.isfinite(depth), depth, -np.inf)
     frame, joint = np.unravel_index(int(depth.argmax()), depth.shape)
@@ -94,4 +110,18 @@ def floor(made: Points, given: Given, new: Bool[np.ndarray, "T 21"]) -> str:
     return (
         f"{JOINTS[joint]} is {100 * depth[frame, joint]:.0f} cm under the lowest place of the "
         f"given motion ({frame / FPS:.1f} s)"
+    )
+
+
+def seam(made: Points, given: Given, new: Bool[np.ndarray, "T 21"]) -> str:
+    """A joint that goes much farther from a given frame to a generated one than beside them."""
+    changes = np.argwhere(new[1:] != new[:-1]).tolist()
+    seams = [(last + 1, joint) for last, joint in changes if 1 <= last < len(made) - 2]
+    jumps = [(seam_step(made[:, [joint]], k), k, joint) for k, joint in seams]
+    far, k, joint = max(jumps, default=(0.0, 0, 0))
+    if far < JUMP:
+        return ""
+    return (
+        f"{JOINTS[joint]} jumps by {100 * far:.0f} cm where given and generated frames meet "
+        f"({k / FPS:.1f} s)"
     )

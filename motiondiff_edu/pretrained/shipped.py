@@ -10,6 +10,7 @@ from functools import lru_cache
 import numpy as np
 from jaxtyping import Bool, Float
 
+from ..conditions.acts import in_words
 from ..editing import by_words
 from ..editing import reconstruct as reconstruction
 from ..editing.by_words import STRENGTH
@@ -51,8 +52,9 @@ def inbetween(
     shoulders come together, or its feet glide, it is drawn again there, and what is too fast or too
     low at last nearer to the lines between keyframes (`editing.plausible`). A MotionWarning says
     so, except of a fold or a glide that another draw mended; and one says where keyframes are
-    farther apart than any in the training. The samples of a smaller number are the first ones of a
-    larger number.
+    farther apart than any in the training, and where a result leaves what was given
+    (`metrics.strays`). The notes of each result say the same. The samples of a smaller number are
+    the first ones of a larger number.
     Raises MotionError or ValueError if motion, mask or numbers do not fit.
     Source: MoFusion 4.4.  Notebook: 15
     """
@@ -86,7 +88,8 @@ def inbetween(
     made, notes = [], []
     first = generate(draws, 1.0)
     for positions, note in each_until_plausible(first, draws, motion.positions, known, generate):
-        made.append(_made(motion, known, positions, "in-betweens"))
+        one = _made(motion, known, positions, "in-betweens")
+        made.append(_looked_at(one, motion, known, words, note))
         notes += [note] if note else []
     if notes:
         which = f" ({len(notes)} of {count} samples)" if count > 1 else ""
@@ -122,9 +125,8 @@ def reconstruct(
     doubt = reconstruction.other_side_in_doubt(walker, made[0], known, generators(seed, 1, 1)[0])
     for words in filter(None, [doubt]):
         warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
-    given = np.where(known[..., None], motion.positions, np.nan)
     made = [
-        _looked_at(_made(motion, known, positions, "reconstructed"), given, ~known, doubt)
+        _looked_at(_made(motion, known, positions, "reconstructed"), motion, known, doubt)
         for positions in made
     ]
     return made if samples > 1 else made[0]
@@ -203,7 +205,8 @@ def edit(
         for note in notes:
             warnings.warn(f"{motion.name}: {note}", MotionWarning, stacklevel=2)
         one = _made(motion, nothing, positions, f"edited: {text.strip():.40}")
-        edited.append(replace(one, notes=(*found.notes, *notes)))
+        about = in_words(found.asked)
+        edited.append(replace(one, notes=(*found.notes, *notes), about=about))
     return edited if samples > 1 else edited[0]
 
 
@@ -223,11 +226,12 @@ def _warn_of_glides(motion: Motion, made: list[Float[np.ndarray, "T 21 3"]]) -> 
         )
 
 
-def _looked_at(
-    made: Motion, given: Float[np.ndarray, "T 21 3"], new: Bool[np.ndarray, "T 21"], *said: str
-) -> Motion:
-    """The motion with notes: where it leaves what was given, which is a MotionWarning, too."""
-    found = strays(made.positions, given, new)
+def _looked_at(made: Motion, motion: Motion, known: Bool[np.ndarray, "T 21"], *said: str) -> Motion:
+    """The motion with notes: what was said, and where it leaves the joints of `motion` that were
+    known, which is a MotionWarning, too.
+    """
+    given = np.where(known[..., None], motion.positions, np.nan)
+    found = strays(made.positions, given, ~known)
     for words in found:
         warnings.warn(f"{made.name}: {words}", MotionWarning, stacklevel=3)
     return replace(made, notes=(*made.notes, *filter(None, said), *found))

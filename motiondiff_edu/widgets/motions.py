@@ -23,7 +23,8 @@ from .player import Look, Player, Soundtrack
 def player_of(motions: Sequence[Motion], labels: Sequence[str] | None = None) -> Player:
     """Several motions side by side, at the frame rate of the first, with the first sound.
 
-    Contacts are shown on the course's skeleton alone, whose heels and toes they belong to.
+    The notes of the motions stand below them. Contacts are shown on the course's skeleton alone,
+    whose heels and toes they belong to.
     Raises MotionError for a missing joint, different skeletons, or a wrong number of labels.
     """
     first = motions[0]
@@ -42,14 +43,28 @@ def player_of(motions: Sequence[Motion], labels: Sequence[str] | None = None) ->
     if sounding.audio is not None:
         sound = Soundtrack(_as_long(sounding, longest), sample_rate=sounding.sample_rate)
     ours = first.skeleton == COURSE
-    return Player(
+    names = _distinct_labels(shown) if labels is None else list(labels)
+    player = Player(
         [motion.positions for motion in shown],
         fps=first.fps,
         contacts=[motion.contacts if ours else None for motion in shown],
-        labels=_distinct_labels(shown) if labels is None else list(labels),
+        labels=names,
         audio=sound,
         look=Look(parents=None if ours else list(first.skeleton.parents)),
     )
+    player.notes = _notes(shown, names)
+    return player
+
+
+def _notes(motions: Sequence[Motion], labels: Sequence[str]) -> list[str]:
+    """The notes of all motions, each once; of several, with the labels of those that have it."""
+    whose: dict[str, list[str]] = {}
+    for k, motion in enumerate(motions):
+        for note in dict.fromkeys(motion.notes):
+            whose.setdefault(note, []).append(labels[k] or f"figure {k + 1}")
+    if len(motions) == 1:
+        return list(whose)
+    return [f"{', '.join(names)}: {note}" for note, names in whose.items()]
 
 
 def _distinct_labels(motions: Sequence[Motion]) -> list[str]:

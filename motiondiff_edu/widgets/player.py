@@ -126,7 +126,8 @@ class Player(anywidget.AnyWidget):
     `audio`: the bytes of a sound file, or a `Soundtrack`, which takes samples with their rate. It
     is played with the motion, cut or filled up to its length (with a warning), above its waveform.
     `look`: layout, height, autoplay, and the parents of another skeleton's joints.
-    `frame` and `playing` can be read and set.
+    `frame` and `playing` can be read and set; so can `notes`, lines of plain text below the
+    figures, which another motion takes away.
     Raises ValueError with figure, frame and joint where a position is not finite or beyond reach,
     and for extras that do not fit the motion.   Notebook: 00, 12
     """
@@ -137,6 +138,7 @@ class Player(anywidget.AnyWidget):
     roots = traitlets.Bytes().tag(sync=True)
     contacts = traitlets.Bytes().tag(sync=True)
     music = traitlets.Dict().tag(sync=True)
+    notes = traitlets.List(traitlets.Unicode()).tag(sync=True)
     sound = traitlets.Bytes().tag(sync=True)
     strips = traitlets.Bytes().tag(sync=True)
     frame = traitlets.Int(0).tag(sync=True)
@@ -185,6 +187,7 @@ class Player(anywidget.AnyWidget):
         self._editions += 1  # another motion may have the same scene: this tells the page of it
         with self.hold_sync():
             self.joints, self.roots = packed.joints, packed.roots
+            self.notes = []
             self.contacts = packing.pack_contacts([f.contacts for f in figures], packed.frames)
             self.frame = min(self.frame, max(packed.frames) - 1)
             self.sound, self.strips, self.music = (
@@ -227,7 +230,8 @@ class Player(anywidget.AnyWidget):
         Needs no kernel and no network.
         """
         record = {name: base64.b64encode(getattr(self, name)).decode() for name in _TRAITS}
-        record |= {"scene": self.scene, "music": self.music, "frame": self.frame, "playing": False}
+        record |= {"scene": self.scene, "music": self.music, "notes": self.notes}
+        record |= {"frame": self.frame, "playing": False}
         text = json.dumps(record, allow_nan=False).replace("<", "\\u003c")
         return PAGE.format(title=html.escape(self.description), module=MODULE, record=text)
 

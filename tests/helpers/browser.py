@@ -172,6 +172,7 @@ def player_page(folder: Path, player) -> str:
     record |= {
         "scene": player.scene,
         "music": player.music,
+        "notes": player.notes,
         "frame": player.frame,
         "playing": player.playing,
     }

@@ -1,5 +1,7 @@
 """Where a motion leaves the given one: each kind is told, and what stays within is not."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,9 @@ from motiondiff_edu.motion.kinematics import rot_y
 from motiondiff_edu.motion.skeleton import joint_index
 
 RIGHT_HAND, LEFT_TOE = joint_index("RightHand"), joint_index("LeftToeBase")
+
+
+FEET = [joint_index(side + part) for side in ("Left", "Right") for part in ("Foot", "ToeBase")]
 
 
 @pytest.fixture(scope="module")
@@ -59,3 +64,51 @@ def test_only_what_is_new_is_judged_and_gaps_are_no_evidence(halves):
     without = given.copy()
     without[:, RIGHT_HAND] = np.nan  # where it was never given, nothing can be said of its reach
     assert not any("goes" in words for words in strays(raised, without, new))
+
+
+def test_keyframes_are_evidence_of_places_and_not_of_speeds(halves):
+    given, made = halves
+    apart = np.where(np.arange(80)[:, None, None] % 20, np.nan, given)
+    assert strays(3 * given, 3 * apart) == []  # a foot is faster than 4 m/s, as in a run
+    beside = np.abs(given[:, FEET[0]] - given[:, FEET[2]]).sum(-1).argmin()
+    assert strays(given, given[beside : beside + 1]) == []  # one pose, with a foot beside the other
+    raised = made.copy()
+    rise = 0.5 * np.sin(np.linspace(0, np.pi, 40))
+    raised[20:60, RIGHT_HAND, 1] += rise
+    assert len(strays(raised, given)) == 1 and strays(raised, apart) == []
+    raised[20:60, RIGHT_HAND, 1] += rise
+    (words,) = strays(raised, apart)
+    assert words.startswith("RightHand goes")
+
+
+def test_a_foot_may_go_where_the_other_one_was(halves):
+    given, made = halves
+    kicked, before = made.copy(), given.copy()
+    kicked[20:60, FEET[0], 1] += 0.6
+    assert any("above where the given motion ever has a foot" in w for w in strays(kicked, given))
+    before[20:60, FEET[2], 1] += 0.6
+    assert strays(kicked, before) == []
+
+
+def test_without_given_feet_nothing_is_said_of_the_floor(halves):
+    given, made = halves
+    without = given.copy()
+    without[:, FEET] = np.nan
+    sunk = made - [0, 0.4, 0]
+    assert strays(sunk, without) == [] and len(strays(sunk, given)) == 1
+    assert strays(made, np.full_like(given, np.nan)) == []
+
+
+def test_a_jump_from_a_given_frame_to_a_generated_one_is_told(halves):
+    given, _ = halves
+    new = np.ones(given.shape[:2], bool)
+    new[::20] = False
+    assert strays(given, np.where(new[..., None], np.nan, given), new) == []
+    still = np.repeat(given[:1], len(given), 0)
+    off = still.copy()
+    off[41:60, LEFT_TOE, 1] += np.linspace(0.54, 0, 19)  # at once; then 3 cm a frame back
+    (words,) = strays(off, np.where(new[..., None], np.nan, still), new)
+    assert re.fullmatch(
+        r"LeftToeBase jumps by 51 cm where given and generated frames meet \(2\.[01] s\)", words
+    )
+    assert strays(off, off, np.zeros_like(new)) == []  # nothing was generated

@@ -29,7 +29,9 @@ def test_unpacked_positions_are_within_a_quarter_millimetre(motion):
 
 def test_a_late_word_of_the_page_about_a_longer_motion_is_no_error(motion):
     player = Player(motion[0])
+    player.notes = ["of the longer motion"]
     player.show(motion[0][:20])
+    assert player.notes == []
     player.set_state({"frame": 30, "playing": True})
     assert (player.frame, player.playing) == (19, True)
     player.set_state({"frame": -1})

@@ -197,6 +197,39 @@ def test_several_figures_are_all_drawn(browser, tmp_path, layout):
         assert page.problems == []
 
 
+def test_notes_are_plain_text_and_the_rest_unfolds_by_key(browser, tmp_path):
+    told = Player(walk(frames=30)[0], look=STILL)
+    told.notes = ["<b>bold</b> & <img src=x>", "two", "three " + 60 * "wide", "four"]
+    with open_page(browser, viewport={"width": 390, "height": 700}) as page:
+        page.goto(told.save_html(tmp_path / "told.html").as_uri())
+        notes = page.get_by_role("note", name="Notes")
+        assert re.findall(".+", notes.inner_text()) == [*told.notes[:2], "and 2 more"]
+        page.locator("canvas").focus()
+        while page.evaluate("document.activeElement.tagName") != "SUMMARY":
+            page.keyboard.press("Tab")
+        page.keyboard.press("Enter")
+        opened = [*told.notes[:2], "and 2 more", *told.notes[2:]]
+        assert re.findall(".+", notes.inner_text()) == opened
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390
+        assert page.problems == [] and page.asked == []
+
+
+def test_a_long_note_begins_in_sight_and_no_note_takes_no_room(browser, player, tmp_path):
+    with open_page(browser) as page:
+        page.goto(player_page(tmp_path, player))
+        notes = page.locator(".mde-notes")
+        assert notes.get_attribute("hidden") is not None
+        page.evaluate("model.set('notes', ['one word '.repeat(40) + 'end'])")
+        begins, more, rest = notes.locator("p, summary").all()
+        assert begins.inner_text().endswith("one word \u2026") and more.inner_text() == "more"
+        assert rest.is_hidden() and 150 < len(begins.inner_text()) <= 202
+        more.click()
+        whole = (begins.inner_text() + rest.inner_text()).replace(" \u2026\u2026", "")
+        assert whole == "one word " * 40 + "end"
+        page.evaluate("model.set('notes', [])")
+        assert notes.get_attribute("hidden") is not None and notes.inner_html() == ""
+
+
 @pytest.mark.parametrize("motion, playing", [("reduce", False), ("no-preference", True)])
 def test_autoplay_unless_motion_is_unwanted(browser, tmp_path, motion, playing):
     with open_page(browser, reduced_motion=motion) as page:

@@ -8,11 +8,11 @@ export const CSS = `
   font: 15px/1.3 var(--jp-ui-font-family, system-ui, sans-serif); padding: 6px; width: 100%;
     max-width: 1200px; }
 .mde-player.mde-fill { height: 100%; max-width: none; }
-.mde-player.mde-fill canvas:not(.mde-lane) { flex: 1; min-height: 0; }
+.mde-player.mde-fill canvas:not(.mde-lane) { flex: 1; min-height: 40vh; }
 .mde-player canvas { width: 100%; display: block; border-radius: 8px; cursor: grab; touch-action:
   pan-y; outline: none; }
 .mde-player canvas:active { cursor: grabbing; }
-.mde-player canvas:focus-visible, .mde-player :is(button, input, select):focus-visible {
+.mde-player canvas:focus-visible, .mde-player :is(button, input, select, summary):focus-visible {
   outline: 3px solid var(--focus); outline-offset: 1px; }
 .mde-row { display: flex; flex-wrap: wrap; align-items: center; gap: 6px 12px; }
 .mde-row > input[type=range] { flex: 1 1 140px; min-width: 100px; accent-color: var(--focus);
@@ -28,7 +28,11 @@ export const CSS = `
 @media (forced-colors: active) { .mde-key i { forced-color-adjust: none; } }
 .mde-player canvas.mde-lane { border-radius: 6px; cursor: pointer; touch-action: pan-y; }
 .mde-key i.mde-ramp { width: 36px; border: 1px solid var(--line); }
-.mde-row output.mde-said { min-width: 0; }`;
+.mde-row output.mde-said { min-width: 0; }
+.mde-notes { font-size: 13px; border-left: 3px solid var(--line); padding-left: 9px;
+  overflow-wrap: anywhere; }
+.mde-notes p { margin: 0 0 3px; }
+.mde-notes summary { cursor: pointer; width: fit-content; padding: 4px 4px 4px 0; }`;
 
 export const COLOUR = { L: [0, 114, 178], R: [213, 94, 0], C: [91, 100, 114] };
 export const GREEN = [0, 158, 115];

@@ -9,6 +9,7 @@ import { feed, silentClock, soundClock } from "./clock.js";
 import { musicLane } from "./lane.js";
 
 const HOME = { yaw: 0.6, pitch: 0.2, zoom: 1 };
+const LONG = 200; // characters of notes that are in sight before they are unfolded
 
 // ---- the widget
 export function mount(model, el, { fill = false } = {}) {
@@ -43,6 +44,7 @@ export function mount(model, el, { fill = false } = {}) {
     "Mute",
   );
   const note = element("output", { class: "mde-said", "aria-live": "polite" });
+  const notes = element("div", { class: "mde-notes", role: "note", "aria-label": "Notes" });
   const sound = element("audio", { preload: "auto" });
   const dots = { L: element("i"), R: element("i") };
   const key = (side, word) => element("span", { class: "mde-key" }, dots[side], word);
@@ -62,6 +64,7 @@ export function mount(model, el, { fill = false } = {}) {
     canvas,
     element("div", { class: "mde-row" }, play, scrub, shown),
     options,
+    notes,
   );
   el.append(root);
   const view = { ...HOME, follow: true };
@@ -395,6 +398,11 @@ export function mount(model, el, { fill = false } = {}) {
   const onPlaying = () => {
     if (model.get("playing") !== playing) setPlaying(model.get("playing"));
   };
+  const onNotes = () => {
+    const found = model.get("notes") || [];
+    notes.hidden = !found.length;
+    notes.replaceChildren(...(found.length ? noted(found) : []));
+  };
   const onScene = () => {
     load();
     frame = Math.min(frame, last);
@@ -405,6 +413,7 @@ export function mount(model, el, { fill = false } = {}) {
   model.on("change:frame", onFrame);
   model.on("change:playing", onPlaying);
   model.on("change:scene", onScene);
+  model.on("change:notes", onNotes);
   redrawn(stop, canvas, draw);
   sighted(stop, canvas, (seen) => {
     visible = seen;
@@ -412,6 +421,7 @@ export function mount(model, el, { fill = false } = {}) {
 
   speeds.value = "1";
   load();
+  onNotes();
   frame = sent = clamp(model.get("frame"), 0, last);
   clock.seek(frame / scene.fps);
   if (scene.muted) {
@@ -431,8 +441,21 @@ export function mount(model, el, { fill = false } = {}) {
     model.off("change:frame", onFrame);
     model.off("change:playing", onPlaying);
     model.off("change:scene", onScene);
+    model.off("change:notes", onNotes);
     root.remove();
   };
+}
+
+// The notes as lines of plain text: the first, and the second if both are short; the rest unfolds.
+function noted([first, ...rest]) {
+  const line = (words) => element("p", {}, words);
+  const cut = first.length > LONG ? first.lastIndexOf(" ", LONG) : 0;
+  const seen = [cut > 0 ? `${first.slice(0, cut)} \u2026` : first];
+  if (rest.length && (first + rest[0]).length <= LONG) seen.push(rest.shift());
+  const more = rest.length ? `and ${rest.length} more` : "more";
+  if (cut > 0) rest.unshift(`\u2026${first.slice(cut)}`);
+  const folded = element("details", {}, element("summary", {}, more), ...rest.map(line));
+  return [...seen.map(line), ...(rest.length ? [folded] : [])];
 }
 
 // ---- the same module with no kernel: `record` carries the traits, binary ones in base64
