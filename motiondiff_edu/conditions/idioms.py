@@ -90,6 +90,11 @@ REWRITTEN = tuple(
             " some-times ",
         ),
         (r"\b(a )?(series|set|number|bunch|flurry|lot|round|string) of\b", " several "),
+        (
+            r"\b(hop|jump|skip)(s|ping|ing)? (around|along|about|across|away)\b",
+            r" \1\2 some-times ",
+        ),
+        (r"\bbounc(e|es|ing)\b", " jump some-times "),
         (r"\b(shadow[- ]?)?boxes\b", " punches some-times "),
         (
             r"\b(jump|leap|spring|hop|get|stand)(s|ing)? (right |quickly )?up from "

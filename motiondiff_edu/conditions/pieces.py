@@ -99,7 +99,7 @@ class Piece:
             return True
         participle = token.endswith("ing") and self.joined != "and"
         head = Head(verb, token, "ing" if participle else self.joined)
-        if plural(self.tokens, k):
+        if plural(self.tokens, k) or goes_on(verb, self.tokens, k):
             head.count, head.vague = 2, True
         say_of(head, self.before)
         return self.begin(head)
@@ -169,6 +169,12 @@ def plural(tokens: Sequence[str], k: int) -> bool:
     while before and before[-1] in (*SIDES, *PACES, "some"):
         before.pop()
     return tokens[k].endswith("s") and (quick or bool(before) and is_light(before[-1]))
+
+
+def goes_on(verb: str, tokens: Sequence[str], k: int) -> bool:
+    """Whether somebody is at something that is done several times: "is jumping"."""
+    during = tokens[max(k - 1, 0)] in ("is", "are", "was", "were", "be", "been")
+    return verb in ("jump", "punch") and tokens[k].endswith("ing") and during
 
 
 def named_again(verb: str, last: Head, before: Sequence[str], joined: str) -> bool:
