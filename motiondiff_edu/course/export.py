@@ -39,16 +39,19 @@ def run(args: argparse.Namespace) -> None:
         notebook = nbformat.read(args.notebook, as_version=4)
     except (ValueError, nbformat.reader.NotJSONError) as error:
         raise ValueError(f"{args.notebook} is no notebook: {error!s:.80}") from None
-    figures = still_alive(notebook)
+    figures, others = still_alive(notebook)
     page, _ = HTMLExporter().from_notebook_node(notebook)
     with replacing(out) as aside:
         aside.write_text(page, "utf-8")
     print(f"{out}: {figures} figures that move without a kernel")
+    if others:
+        print(f"{others} controls need a kernel, and are seen in the notebook alone")
 
 
-def still_alive(notebook: Any) -> int:
-    """Leave each widget's own page in its output, in place of what needs a kernel; count them.
+def still_alive(notebook: Any) -> tuple[int, int]:
+    """Leave each widget's own page in its output, in place of what needs a kernel.
 
+    Returned are the number of these, and that of widgets without a page.
     Raises ValueError for a notebook without outputs.
     """
     code = [cell for cell in notebook.cells if cell.cell_type == "code"]
@@ -60,6 +63,7 @@ def still_alive(notebook: Any) -> int:
     widgets = [one for one in data if LIVE in one and "text/html" in one]
     for one in widgets:
         del one[LIVE]
-    if not any(LIVE in one for one in data):
+    others = sum(LIVE in one for one in data)
+    if not others:
         notebook.metadata.pop("widgets", None)
-    return len(widgets)
+    return len(widgets), others

@@ -13,6 +13,7 @@ from ..conditions.text import TextError
 from ..performers.mover import LONGEST, SECONDS, SHORTEST, Mover
 from .live import TURN
 from .player import Player
+from .still import stills, with_still
 
 ANSWERS = 4
 SENTENCE = "walks forward, then waves with the left hand"
@@ -31,7 +32,7 @@ class Prompt(ipywidgets.VBox):
         _check_sizes(seconds, seed)  # a slider and a box would put them right silently
         self.mover = mover
         self.motions: list = []
-        self._answered: tuple[str, float, int] | None = None
+        self._answered = ("", 0.0, 0)  # the sentence, seconds and seed of the motions on show
         self._note = ""  # what was said of the answered sentence
         wide = ipywidgets.Layout(width="98%")
         self.text = ipywidgets.Text(
@@ -54,6 +55,10 @@ class Prompt(ipywidgets.VBox):
         self.button.on_click(lambda _: self.act())
         controls = ipywidgets.HBox([self.seconds, self.seed, self.button])
         super().__init__([self.text, controls, self.message, self.player])
+
+    def _repr_mimebundle_(self, **kwargs):
+        still = f"<p>{html.escape(self._answered[0])}</p>" + "".join(stills(self))
+        return with_still(super()._repr_mimebundle_(**kwargs), {"text/html": still})
 
     def act(self) -> None:
         """Answer the sentence in the box, unless it is answered already."""
@@ -88,7 +93,10 @@ class Prompt(ipywidgets.VBox):
             found, seconds=seconds, samples=ANSWERS, seed=seed, progress=False
         )
         self._answered = asked
-        self._note = "; ".join(found.notes)
+        notes = [*found.notes]
+        for label, motion in zip(self._labels(), self.motions, strict=True):
+            notes += [f"{label}: {note}" for note in motion.notes[len(found.notes) :]]
+        self._note = "; ".join(notes)
         self._say(self._note)
 
     def _labels(self) -> list[str]:

@@ -114,3 +114,14 @@ def test_a_word_that_is_read_as_another_is_said_below_the_box(mover):
 def test_what_the_box_cannot_show_is_refused_and_not_put_right(mover, sizes):
     with pytest.raises(ValueError, match=f"{next(iter(sizes))} must be"):
         Prompt(mover, "walks", **sizes)
+
+
+def test_what_is_not_to_be_seen_is_said_with_its_answer(mover):
+    box = Prompt(mover, "kicks", seconds=2.0)  # an untrained network shows nothing
+    assert "answer 2: asked: kicks; but &#x27;kick&#x27; (right) is not to" in box.message.value
+
+
+def test_without_a_kernel_the_sentence_and_its_player_are_there(mover):
+    bundle, _ = Prompt(mover, "walks <b>", seconds=2.0)._repr_mimebundle_()
+    assert bundle["text/html"].startswith("<p>walks &lt;b&gt;</p>")
+    assert bundle["text/html"].count("<iframe") == 1
