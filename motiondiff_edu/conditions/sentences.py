@@ -14,12 +14,15 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from .acts import KINDS, Act, Parts
+from .acts import KINDS, ONE, USUALLY, Act, Parts
 from .heads import Head, take
-from .idioms import LIMBS, NUMBERS, SIDES, rewritten
+from .idioms import HEADS, LIMBS, NUMBERS, PACES, SIDES, VAGUE, WAYS, rewritten
 from .pieces import acts_in
+from .text import base_forms, words_of
 from .verbs import is_light
 
+# verbs of which each is to be seen, if it is in a sentence
+PLAINLY = frozenset("walk run squat jump kick sit bow wave punch clap turn raise".split())
 ONWARD = ("walk", "run", "back")  # what arms are moved along with, for "walks and waves"
 
 
@@ -34,7 +37,8 @@ class Understood:
 def understand(text: str) -> Understood:
     """What a sentence asks for; a sentence without an act has no parts."""
     notes: list[str] = []
-    clauses = [" ".join(clause.split()) for clause in rewritten(text).split("|")]
+    low = rewritten(text)
+    clauses = [" ".join(clause.split()) for clause in low.split("|")]
     parts: list[tuple[Act, ...]] = []
     for clause in filter(None, clauses):
         said = len(notes)
@@ -42,7 +46,42 @@ def understand(text: str) -> Understood:
         if not more and len(notes) == said and says_something(clause):
             notes.append(f"not understood: {clause!r}")
         parts += more
-    return Understood(tuple(counted_together(in_one_flow(parts))), tuple(dict.fromkeys(notes)))
+    parts = counted_together(in_one_flow(parts))
+    notes += [f"not understood, and left out: {word!r}" for word in unused(low, parts, notes)]
+    return Understood(tuple(parts), tuple(dict.fromkeys(notes)))
+
+
+def unused(text: str, parts: Sequence[tuple[Act, ...]], notes: Sequence[str]) -> list[str]:
+    """Words of a text about acts that no act shows and no note names: the grammar went wrong.
+
+    Looked for one by one, without grammar: sides, counts, speeds, *backwards*, *sideways*, verbs.
+    """
+    acts = [act for part in parts for act in part]
+    verbs = {act.verb for act in acts}
+    sides = {act.side for act in acts} | ({"both"} if verbs & {"jump", "clap", "squat"} else set())
+    sides |= {*ONE} if "both" in sides or any(act.direction == "aside" for act in acts) else set()
+    most = max((act.count or USUALLY.get(act.verb, 1) for act in acts), default=1)
+    most = max(most, len(acts), 2 if "both" in sides else 1)
+    shown = {"back": {"back"}, "aside": {"aside"}, "walk": {"walk", "back", "aside"}}
+    shown |= {"raise": {"raise", "hold"}}
+    found = []
+    for word in words_of(text) if acts else ():
+        verb = next((HEADS[form] for form in (word, *base_forms(word)) if form in HEADS), "")
+        away = word in WAYS and word not in ("back", "reverse", "side") and WAYS[word]
+        lost = (
+            SIDES.get(word, "") not in {"", *sides}
+            or word not in VAGUE
+            and int(NUMBERS.get(word, word if word.isdigit() else 1)) > most
+            or PACES.get(word, "") not in {"", *(act.speed for act in acts)}
+            or away in ("back", "aside")
+            and not verbs & shown[away]
+            and "point" not in verbs
+            or verb in PLAINLY
+            and not verbs & shown.get(verb, {verb})
+        )
+        if lost and not any(word in note or SIDES.get(word, "?") in note for note in notes):
+            found.append(word)
+    return list(dict.fromkeys(found))
 
 
 def says_something(clause: str) -> bool:

@@ -9,7 +9,7 @@ from data_synth.actions.acts import VERBS, seated
 from data_synth.actions.captions import WORDINGS, caption, vocabulary, words_of
 from data_synth.actions.sentences import draw
 from motiondiff_edu.conditions.acts import KINDS, PLAIN, Act, in_words, scheduled, seconds_of
-from motiondiff_edu.conditions.sentences import understand
+from motiondiff_edu.conditions.sentences import understand, unused
 
 
 def acts_of(text: str) -> list[list[tuple]]:
@@ -238,3 +238,26 @@ def test_who_sits_gets_up_before_the_legs_do_something_else():
     assert [verb for verb, *_ in plan_of("sits down, then walks", 8)] == ["sit", "rise", "walk"]
     verbs = [verb for verb, *_ in plan_of("sits down, then waves, then stands up, then bows", 10)]
     assert verbs == ["sit", "wave", "rise", "bow"]
+
+
+@pytest.mark.parametrize(
+    "text, parts, lost",
+    [
+        ("kicks with both legs", [("kick", "right")], ["both"]),
+        ("waves right, then left", [("wave", "right")], ["left"]),
+        ("claps, then bows", [("clap",)], ["bows"]),
+        ("three kicks", [("kick", "right")], ["three"]),
+        ("slow walk", [("walk",)], ["slow"]),
+        ("walks backwards", [("walk",)], ["backwards"]),
+        ("walks backwards", [("back",)], []),
+        ("points to the left with the right arm", [("point", "right", 0, "", "aside")], []),
+        ("jumps with both feet", [("jump",)], []),
+        ("a few kicks", [("kick", "left")], []),
+        ("waves his left hand, then turns", [("wave", "left"), ("turn", "right")], []),
+        ("walks sideways", [("aside", "left")], []),
+    ],
+)
+def test_words_about_acts_that_no_act_shows_are_found(text, parts, lost):
+    """Where the grammar goes wrong; as if it had made these parts of the text."""
+    assert unused(text, [(Act(*part),) for part in parts], []) == lost
+    assert unused(text, [(Act(*part),) for part in parts], [f"{lost}"]) == []
