@@ -121,7 +121,7 @@ def verb_of(head: Head) -> str:
     """What a verb is with the words about it: to step to the left is *aside*."""
     ways, verb = {*head.ways}, head.verb
     if verb in ("walk", "run"):
-        steps = head.word.startswith(("step", "shuffl", "mov", "go"))
+        steps = head.word.startswith(("step", "shuffl", "mov", "go", "edg", "inch"))
         if "back" in ways:
             return "back"
         if "aside" in ways or steps and head.side in ONE:

@@ -24,7 +24,16 @@ REWRITTEN = tuple(
         (r"\b(r|rt)\b(?= \w)", "right"),
         (r"\bfwd\b", "forward"),
         (r"\band than\b", "and then"),
-        # what says nothing
+        (r"\b(left|right)[- ](hand|arm|foot|leg)ed\b", r"\1 \2"),
+        (r"\b(left|right)wards?\b", r"to the \1"),
+        (r"\blower(s|ing)? (him|her|your|my|them)sel(f|ves) (down )?(in|on)?to {own}\w+", " sit "),
+        (r"\bkeep(s|ing)? (on )?going\b", " keep-going "),
+        # what says nothing, and what must not be done
+        (r"\bgoing to (?!{own}(left|right|door|front|back|side|end)\b)(?!the|an?\b)", " "),
+        (r"\b(don't|dont|do not|doesn't|does not|not|without) mov(e|ing)( at all)?\b", " stand "),
+        (r"\b(don't|dont|do not|doesn't|does not|never|didn't) \w+", " not-done "),
+        (r"\b(in|as an?) greeting\b|\ball the way\b|\bthe (whole|entire) (time|way)\b", " "),
+        (r"\b(in|from) {own}(seated|sitting) position\b", " "),
         (
             r"\b(show|animate|generate|create|make|need)( me)?( an?)?( animation)?( of)? "
             r"(?={who}\b)",
@@ -58,6 +67,7 @@ REWRITTEN = tuple(
         (r"^[ |]*(simultaneously|at the same time)[ |,]+(.*?) *(, and|,|\band\b)", r"\2 & "),
         (r"^([^|]*)\b(and)\b([^|]*)\b(at the same time|simultaneously)\b", r"\1 & \3"),
         (r"\b(and )?without (stopping|pausing|a break)\b", " & "),
+        (r"\bwithout \w+ing\b", " "),
         (r"^(\w+ing\b[^,|&]*), *(?={who}\b(?! then))", r"\1 & "),
         (r"\b(but|and) (first|before (that|this|it))\b,?", " before-it "),
         (r"\bbefore (that|this|it)\b,?", " before-it "),
@@ -106,7 +116,13 @@ REWRITTEN = tuple(
             " turn around ",
         ),
         (r"\bturn(s|ing)? about\b", " turn around "),
-        (r"\b(not|without) moving\b", " "),
+        (r"\bin no (hurry|rush)( at all)?\b|\b(at a crawl|in slow motion)\b", " slowly "),
+        (r"\bspeed(s|ing)? up( and)?\b|\bat (full|top|high) speed\b", " quickly "),
+        (r"\b(plop|flop|plonk)(s|ped|ping)? down\b", " sit "),
+        (r"^\W*reverses?\b", " walk backwards "),
+        (r"\bflag(s|ging)? down\b", " wave "),
+        (r"\b(left|right) cross\b", r"\1 punch"),
+        (r"\bside[- ]?kick(s|ing)?\b", r"kick\1"),
         (r"\bstop(s|ping)? (moving|walking|running|going)\b", " stand "),
         (
             r"\bsquat(s|ting)?( down)? (and|then) (come|get|go|stand)(s|ing)? (back )?up\b",
@@ -227,17 +243,17 @@ REWRITTEN = tuple(
 HEADS = {
     **dict.fromkeys(
         "walk stroll stride amble wander go move step travel advance enter exit leave"
-        " approach".split(),
+        " approach edge inch creep".split(),
         "walk",
     ),
     **dict.fromkeys("run jog race sprint dash".split(), "run"),
     "retreat": "back",
-    "strafe": "aside",
+    **dict.fromkeys("strafe sidle".split(), "aside"),
     "shuffle": "walk",
     **dict.fromkeys("turn rotate pivot face".split(), "turn"),
     **dict.fromkeys("spin twirl whirl".split(), "spin"),
     **dict.fromkeys("stand wait stay pause stop halt freeze idle".split(), "stand"),
-    **dict.fromkeys("squat crouch".split(), "squat"),
+    **dict.fromkeys("squat crouch duck dip".split(), "squat"),
     **dict.fromkeys("jump hop leap spring bounce".split(), "jump"),
     "kick": "kick",
     **dict.fromkeys("sit settle".split(), "sit"),
@@ -247,7 +263,7 @@ HEADS = {
     **dict.fromkeys("raise lift reach put stick".split(), "raise"),
     "stretch": "stretch",
     **dict.fromkeys("hold keep have has hold- hold-s hold-left hold-right".split(), "hold"),
-    **dict.fromkeys("punch jab hit box uppercut".split(), "punch"),
+    **dict.fromkeys("punch jab hit box uppercut hook".split(), "punch"),
     "strike": "strike",
     "swing": "strike",
     **dict.fromkeys("clap applaud".split(), "clap"),
@@ -257,7 +273,12 @@ HEADS = {
 LIGHT = frozenset(
     "do does doing did make give take perform deliver land execute throw get try go".split()
 )
-SIDES = {"left": "left", "right": "right", "both": "both", "two-handed": "both", "either": ""}
+SIDES = {
+    **dict.fromkeys("left lefty southpaw counterclockwise anticlockwise".split(), "left"),
+    **dict.fromkeys("right righty clockwise".split(), "right"),
+    **dict.fromkeys("both two-handed".split(), "both"),
+    "either": "",
+}
 NUMBERS = {
     "once": 1, "one": 1, "single": 1, "twice": 2, "two": 2, "thrice": 3, "three": 3, "four": 4,
     "few": 3, "several": 3, "some-times": 3, "five": 5, "six": 6,
@@ -297,7 +318,7 @@ FILLERS = PASSED_OVER | frozenset(
 # counts that are not meant exactly: steps of a walk are not counted
 VAGUE = frozenset("few several some-times".split())
 # after "a" or "the" these are things, no acts
-THINGS = frozenset("box face point show stand".split())
+THINGS = frozenset("box face point show stand exit".split())
 # acts that are done to somebody, who is named after these words and need not be there
 TOWARDS = ("to", "at", "for")
 WHOSE = frozenset("a an the his her their my your its our all some".split())

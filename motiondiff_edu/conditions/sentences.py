@@ -79,7 +79,8 @@ def unused(text: str, parts: Sequence[tuple[Act, ...]], notes: Sequence[str]) ->
             or verb in PLAINLY
             and not verbs & shown.get(verb, {verb})
         )
-        if lost and not any(word in note or SIDES.get(word, "?") in note for note in notes):
+        names = (word, SIDES.get(word) or word, str(NUMBERS.get(word, word)))
+        if lost and not any(name in note for note in notes for name in names):
             found.append(word)
     return list(dict.fromkeys(found))
 

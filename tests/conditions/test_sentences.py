@@ -126,6 +126,14 @@ def test_captions_of_the_data_are_understood_as_they_were_meant(held_out):
         ("points forward with the left, then to the side with the right",
          [[("point", "left", "forward")], [("point", "right", "aside")]]),
         ("reach for the sky", [[("raise", "both")]]),
+        ("left-footed kick", [[("kick", "left")]]),
+        ("move rightwards without turning", [[("aside", "right")]]),
+        ("don't move", [[("stand",)]]),
+        ("she's going to sit", [[("sit",)]]),
+        ("strolls by, in no hurry at all", [[("walk", "slowly")]]),
+        ("spins counterclockwise", [[("turn", "left", "around")]]),
+        ("lowers himself into a chair", [[("sit",)]]),
+        ("bows in greeting", [[("bow",)]]),
     ],
 )  # fmt: skip
 def test_what_people_write(text, wanted):
@@ -157,6 +165,8 @@ def test_what_people_write(text, wanted):
         ("runs back and forth", "'back and forth'"),
         ("does a roundhouse kick", "'roundhouse'"),
         ("walks for five seconds", "how long an act takes is left out"),
+        ("walks and doesn't wave", "'not done'"),
+        ("bows, says hello and sings", "'sings'"),
         ("stands there, then throws hands", "not understood: 'throws hands'"),
         ("bows, i mean, claps", "'i mean'"),
     ],
