@@ -126,29 +126,73 @@ def _intended(source: str) -> Iterable[str]:
     return re.findall(r"\bchecks\.(\w+)", source) if half_way else checks_called(source)
 
 
-def definitions(source: str) -> tuple[str, ...]:
-    """The imports, functions, classes and literal values of a cell, as statements.
+# of these modules alone functions are called to make a value: others may take long
+CALLED = frozenset("math cmath np numpy torch functools itertools fractions".split())
+BUILTIN = frozenset("float int complex bool str list tuple dict set len abs min max sum".split())
 
-    Nothing else of it is needed by an answer that is run by itself.
+
+def definitions(source: str) -> tuple[str, ...]:
+    """The imports, functions, classes and values of a cell, as statements.
+
+    Nothing else of it is needed by an answer that is run by itself. A name whose value is made in
+    another way is deleted, so that none has a value of before.
     """
     tree = _parsed(source)
-    kinds = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.ClassDef)
     found = []
     for node in tree.body if tree else ():
         with contextlib.suppress(RecursionError):  # a statement nested too deeply is left out
-            if isinstance(node, kinds) or _is_literal(node):
+            if _defines(node):
                 found.append(ast.unparse(node))
+            else:
+                found += [GONE.format(name=name) for name in _changed_by(node)]
     return tuple(found)
 
 
-def _is_literal(node: ast.stmt) -> bool:
-    """Whether a statement gives a name to a number, text, list of such ..., or a lambda."""
-    if not isinstance(node, ast.Assign):
-        return False
-    with contextlib.suppress(ValueError, TypeError):
-        ast.literal_eval(node.value)
+GONE = "if type({name}).__name__ != 'module': del {name}"
+
+
+def _defines(node: ast.stmt) -> bool:
+    """Whether a statement gives names to modules, functions, classes or values (`_is_value`)."""
+    if isinstance(node, ast.Try):
+        return all(isinstance(one, ast.Import | ast.ImportFrom) for one in node.body)
+    if isinstance(node, ast.Assign | ast.AnnAssign | ast.AugAssign):
+        return node.value is not None and _is_value(node.value)
+    kinds = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.ClassDef)
+    return isinstance(node, kinds)
+
+
+def _is_value(node: ast.expr) -> bool:
+    """Whether an expression is made of literals, names and sums of such, or is a lambda.
+
+    Functions are called of CALLED and BUILTIN alone.
+    """
+    if isinstance(node, ast.Lambda):
         return True
-    return isinstance(node.value, ast.Lambda)
+    called = (one.func for one in ast.walk(node) if isinstance(one, ast.Call))
+    others = (ast.Await, ast.Yield, ast.YieldFrom, ast.NamedExpr, ast.comprehension)
+    return all(_root(one) in CALLED | BUILTIN for one in called) and not any(
+        isinstance(one, others) for one in ast.walk(node)
+    )
+
+
+def _root(node: ast.expr) -> str:
+    """The name that an expression like np.linalg.norm begins with; "" for another one."""
+    while isinstance(node, ast.Attribute):
+        node = node.value
+    return node.id if isinstance(node, ast.Name) else ""
+
+
+def _changed_by(node: ast.stmt) -> list[str]:
+    """The names that a statement assigns, or whose methods it calls ("table.append(1)")."""
+    names = {
+        one.id
+        for one in ast.walk(node)
+        if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
+    }
+    if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
+        function = node.value.func
+        names |= {_root(function)} - {""} if isinstance(function, ast.Attribute) else set()
+    return sorted(names - {"checks"})
 
 
 def exercises(path: Path) -> list[str]:

@@ -9,6 +9,7 @@ import csv
 import io
 import json
 import os
+import re
 import secrets
 import select
 import shutil
@@ -19,10 +20,11 @@ import tempfile
 import time
 from collections import Counter
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 from .._files import check_writable, replacing
-from . import answers
+from . import answers, fence
 from .answers import DIED, OPEN, RIGHT, SLOW
 from .places import notebook_folder
 
@@ -46,14 +48,16 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of `collect`."""
     parser.description = (
         "Run the exercises of many students' copies. FOLDER has a folder for each student, with "
-        "copies of the notebooks in it (deeper folders are looked into, too). Every answer runs "
-        "in a process and an empty folder of its own with limits of time and, on Linux, of "
-        "memory. With it runs what the student's cells before it define: imports, functions, "
-        "classes, plain values. That keeps answers apart; it is no protection against malice: do "
-        "not run code of people whom you do not trust."
+        "copies of the notebooks in it (deeper folders are looked into, too; of several copies "
+        "the newest attempt at each exercise counts). Every answer runs in a process and an empty "
+        "folder of its own with limits of time and, on Linux, of memory and of where it writes. "
+        "With it runs what the student's cells before it define: imports, functions, classes, "
+        "values. That keeps answers apart; it is no protection against malice: do not run code of "
+        "people whom you do not trust."
     )
     parser.add_argument("folder", type=Path, metavar="FOLDER")
     parser.add_argument("--out", type=Path, metavar="FILE.csv", help="also write all results here")
+    parser.add_argument("--overwrite", action="store_true", help="replace an existing FILE.csv")
     parser.add_argument(
         "--only", nargs="+", default=[], metavar="NB", help="only these notebooks, 02 for instance"
     )
@@ -70,14 +74,21 @@ def run(chosen: argparse.Namespace) -> int:
     if chosen.seconds < 1 or chosen.gigabytes <= 0:
         raise CollectError("--seconds must be 1 or more, and --gigabytes above 0")
     if chosen.out:
+        if chosen.out.exists() and not chosen.overwrite:
+            raise CollectError(f"{chosen.out} exists: choose another name, or add --overwrite")
         check_writable(chosen.out)
+    if not fence.version():
+        progress(
+            "the answers could change all your files: this system cannot keep them in one folder "
+            "(Linux since 5.13 can). Collect only from people whom you trust"
+        )
     copies = copies_of(chosen.folder, chosen.only)
     rows, whole = results(copies, chosen.seconds, chosen.gigabytes)
     say(table(rows))
     say(mistakes(rows))
     if chosen.out:
         with replacing(chosen.out) as part:
-            part.write_text(as_csv(rows), encoding="utf-8")
+            part.write_text(as_csv(rows), encoding="utf-8-sig")  # by which Excel knows UTF-8
         say(f"written: {chosen.out}")
     return 0 if whole else 1
 
@@ -95,12 +106,21 @@ def copies_of(folder: Path, only: list[str]) -> dict[tuple[str, str], list[Path]
     """
     if not folder.is_dir():
         raise CollectError(f"{folder} is no folder; it should have a folder for each student")
-    wanted = {number.zfill(2) for number in only}
+    wanted = {re.sub(r"\D.*", "", number).zfill(2) for number in only}
     found: dict[tuple[str, str], list[Path]] = {}
+    others = []
     for path in sorted(_notebooks(folder)):
-        if not wanted or path.name[:2] in wanted:
-            who = path.relative_to(folder).parts[0]
-            found.setdefault((name_of(who), path.name[:2]), []).append(path)
+        who, *inside = path.relative_to(folder).parts
+        number = number_of(path.name)
+        if number and inside and (not wanted or number in wanted):
+            found.setdefault((name_of(who), number), []).append(path)
+        elif not number or not inside:
+            others.append(name_of(str(path.relative_to(folder))))
+    if others:
+        progress(
+            f"left out, for they are in no student's folder or have another name than the "
+            f"notebooks of the course: {', '.join(others)}"
+        )
     if not found:
         raise CollectError(
             f"{folder} has no copies of the notebooks; expected for instance "
@@ -109,20 +129,44 @@ def copies_of(folder: Path, only: list[str]) -> dict[tuple[str, str], list[Path]
     students = {name_of(path.name) for path in folder.glob("[!.]*") if os.path.isdir(path)}
     if none := sorted(students - {who for who, _ in found}):
         progress(f"no copies were found in the folders: {', '.join(none)}")
+    for (who, number), paths in found.items():
+        inside = {path.relative_to(folder).parts[1:-1] for path in paths}
+        if len(inside) > 1:
+            progress(
+                f"{who} has copies of {number} in several folders, and the newest attempt at each "
+                f"exercise counts. Is {folder} one folder too high?"
+            )
     return {key: sorted(paths, key=_changed, reverse=True) for key, paths in found.items()}
 
 
+@cache
+def course_names() -> dict[str, str]:
+    """The names of the course's notebooks without .ipynb, by number."""
+    paths = (notebook_folder() / "student").glob("[0-9][0-9]_*.ipynb")
+    return {path.name[:2]: path.stem for path in paths}
+
+
+def number_of(name: str) -> str:
+    """Which notebook a file is by its name: 02_noise, "Copy of 02_noise", 02-noise-1; or ""."""
+    for number, stem in course_names().items():
+        own = re.escape(stem).replace("_", "[_ -]")
+        if re.search(own, name, re.I) or re.match(rf"{number}[_ .-]", name):
+            return number
+    return name[:2] if re.match(r"\d\d_", name) else ""
+
+
 def _notebooks(folder: Path) -> Iterator[Path]:
-    """All that has the name of a notebook in the students' folders, also a folder of that name.
+    """All that has a notebook's ending in the students' folders, also a folder of such a name.
 
     What cannot be listed is left out. A student's folder may be a link; no other one is followed.
     """
+    yield from folder.glob("*.ipynb")  # beside the folders; they are named and left out
     todo = [(path, 1) for path in folder.iterdir() if path.name != ".ipynb_checkpoints"]
     while todo:
         inside, depth = todo.pop()
         with contextlib.suppress(OSError):
             for path in inside.iterdir():
-                if path.match("[0-9][0-9]_*.ipynb"):
+                if path.suffix.lower() == ".ipynb":
                     yield path
                 skipped = os.path.islink(path) or path.name == ".ipynb_checkpoints"
                 if depth < DEEPEST and not skipped and os.path.isdir(path):
@@ -160,7 +204,8 @@ def results(
     for number in sorted({number for _, number in copies}):
         own = next(iter(sorted((notebook_folder() / "student").glob(f"{number}_*.ipynb"))), None)
         theirs = {who: paths for (who, nb), paths in copies.items() if nb == number}
-        count = f"{sum(map(len, theirs.values()))} copies"
+        copies_there = sum(map(len, theirs.values()))
+        count = f"{copies_there} {'copy' if copies_there == 1 else 'copies'}"
         if own is None:
             progress(f"notebook {number}: {count} left out, the course has no such notebook")
             continue
@@ -363,7 +408,7 @@ def table(rows: list[dict]) -> str:
 
 
 def mistakes(rows: list[dict], most: int = 12) -> str:
-    """The commonest messages of the class."""
+    """The messages that several people have, the commonest first."""
     counts = Counter(
         (row["notebook"], row["exercise"], row["message"])
         for row in rows
@@ -372,8 +417,9 @@ def mistakes(rows: list[dict], most: int = 12) -> str:
     lines = [
         f"{count:3d} x  {number} {name}: {message}"
         for (number, name, message), count in counts.most_common(most)
+        if count > 1
     ]
-    return "\n".join(["The commonest mistakes:", *(lines or ["none"]), ""])
+    return "\n".join(["Mistakes that several people made:", *(lines or ["none"]), ""])
 
 
 def as_csv(rows: list[dict]) -> str:

@@ -37,7 +37,8 @@ def run(args: argparse.Namespace) -> None:
 
     try:
         notebook = nbformat.read(args.notebook, as_version=4)
-    except (ValueError, nbformat.reader.NotJSONError) as error:
+        nbformat.validate(notebook)
+    except (ValueError, AttributeError, nbformat.ValidationError) as error:
         raise ValueError(f"{args.notebook} is no notebook: {error!s:.80}") from None
     figures, others = still_alive(notebook)
     page, _ = HTMLExporter().from_notebook_node(notebook)

@@ -8,8 +8,9 @@ The notebook's own cells prepare the names once. For every question a fork of th
 the student's copies, runs what their cells before the answer define, and then the answer. The fork
 has an empty folder, so many seconds by the clock of its parent and, on Linux, so much more memory.
 Then the processes that it started end: on Linux all, elsewhere those of its group, so that one
-that calls setsid lives on. This keeps mistakes apart. It is no protection against malice: the
-code runs with the rights of who runs this, and could change what the wrapper around it finds.
+that calls setsid lives on. Where Linux has Landlock, the fork writes in its folder alone (`fence`).
+This keeps mistakes apart. It is no protection against malice: the code runs with the rights of who
+runs this, can read what they can, and could change what the wrapper around it finds.
 """
 
 import contextlib
@@ -28,7 +29,7 @@ import warnings
 from collections.abc import Sequence
 from pathlib import Path
 
-from . import answers
+from . import answers, fence
 from .answers import DIED, FAILED, OPEN, RIGHT, SLOW, UNREADABLE, WRONG, Answer
 
 GONE = "its cell is gone"
@@ -150,6 +151,7 @@ def _answer(result: int, question: dict, prepared: dict, handed_out: dict[str, A
     os.environ["TMPDIR"] = question["folder"]
     tempfile.tempdir = None  # looked up again
     _limit(question["gigabytes"])
+    fence.keep_within(question["folder"])
     here = os.getpid()
     found = answered(question, prepared, handed_out)
     if os.getpid() == here:  # and no fork that the answer made

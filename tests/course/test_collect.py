@@ -12,7 +12,7 @@ import notebook_cells
 import pytest
 
 from motiondiff_edu.__main__ import main
-from motiondiff_edu.course import answers, collect
+from motiondiff_edu.course import answers, collect, fence, trial
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="collect needs fork")
 NAME = "02_noise.ipynb"
@@ -56,6 +56,15 @@ RIGHT_WAYS = {
     # what an answer leaves in its folder, the next one does not see
     "leaves_a_file": [TIDY + RIGHT],
     "sees_no_file": [TIDY + RIGHT],
+    "sums": [
+        "import math\nHALF = 1 / 2\nHALF *= 2\nTWO: float = -(-2.0) * HALF",
+        HELPER.replace("power(", "math.pow("),
+    ],
+    "computed": ["import numpy as np\nTWO = float(np.sqrt(4))\npower = pow", HELPER],
+    "tried": [
+        "try:\n    import math\nexcept ImportError:\n    pass\nTWO = 2",
+        HELPER.replace("power(", "math.pow("),
+    ],
     "lambda": ["my_constant_beta = lambda S, left: 1 - left ** (2 / S)", CALL],
 }
 # those whose exercise is open
@@ -122,7 +131,7 @@ def collected(handed_in, tmp_path_factory):
         [sys.executable, "-m", "motiondiff_edu", *command], capture_output=True, text=True
     )
     assert done.returncode == 0, done.stderr
-    with out.open() as file:
+    with out.open(encoding="utf-8-sig") as file:
         return done.stdout, list(csv.DictReader(file)), done.stderr
 
 
@@ -163,7 +172,7 @@ def test_the_table_and_the_commonest_mistakes(collected):
     lines = {line.split()[0]: line for line in said.splitlines() if line[:1].isalpha()}
     assert lines["ada"].split()[1:] == ["..+", "1", "of", "3"]
     assert lines["bo"].split()[1] == "..x" and lines["jo"].split()[1] == "xxx"
-    first = said.split("The commonest mistakes:\n")[1].splitlines()[0]
+    first = said.split("Mistakes that several people made:\n")[1].splitlines()[0]
     assert first.startswith("  3 x  02 constant_beta: beta: that leaves the share")
 
 
@@ -236,8 +245,109 @@ def test_a_notebook_that_the_course_does_not_have_is_left_out(tmp_path, capsys):
     (tmp_path / "x" / "99_notes.ipynb").write_text("{}")
     assert main(["collect", str(tmp_path)]) == 1
     told = capsys.readouterr().err
-    assert "notebook 99: 1 copies left out, the course has no such notebook" in told
+    assert "notebook 99: 1 copy left out, the course has no such notebook" in told
     assert "the course has no exercises for these copies" in told
+
+
+@pytest.mark.parametrize(
+    "source, kept",
+    [
+        ("TWO = 2\nTWO = train(TWO)", {}),  # no value of before
+        ("TWO = []\nTWO.append(2)", {}),
+        ("TWO = 2\nfor TWO in range(9):\n    pass", {}),
+        ("TWO = 1\nTWO += 1", {"TWO": 2}),
+        ("import math\nmath.sqrt(2)\nTWO = math.sqrt(4)", {"TWO": 2.0}),
+        ("TWO = len([1, 2])\nTWO.bit_length", {"TWO": 2}),
+    ],
+)
+def test_names_have_their_last_value_or_none(source, kept):
+    names = trial._defined(answers.definitions(source), {})
+    assert {key: names[key] for key in ("TWO",) if key in names} == kept
+
+
+@pytest.mark.parametrize(
+    "name, number",
+    [
+        ("02_noise.ipynb", "02"), ("02_noise-Copy1.ipynb", "02"), ("Copy of 02_noise.ipynb", "02"),
+        ("anna_02-noise.IPYNB", "02"), ("02.ipynb", "02"), ("02 mine.ipynb", "02"),
+        ("99_notes.ipynb", "99"), ("homework week 2.ipynb", ""), ("2026-11-02 x.ipynb", ""),
+        ("102_noise_of_mine.ipynb", "02"), ("noise.ipynb", ""),
+    ],
+)  # fmt: skip
+def test_a_renamed_notebook_is_known_by_its_name(name, number):
+    assert collect.number_of(name) == number
+
+
+def test_what_is_left_out_is_named_and_a_table_is_kept(tmp_path, capsys):
+    (tmp_path / "x" / "a").mkdir(parents=True)
+    (tmp_path / "x" / "b").mkdir()
+    for name in ("x/week two.ipynb", "02_noise.ipynb", "x/a/99_x.ipynb", "x/b/99_x.ipynb"):
+        (tmp_path / name).write_text("{}")
+    assert main(["collect", str(tmp_path)]) == 1
+    told = capsys.readouterr().err
+    assert "the notebooks of the course: 02_noise.ipynb, x/week two.ipynb" in told
+    assert f"Is {tmp_path} one folder too high?" in told
+    table = tmp_path / "class.csv"
+    table.write_text("my marks")
+    assert main(["collect", str(tmp_path), "--out", str(table)]) == 1
+    assert "or add --overwrite" in capsys.readouterr().err and table.read_text() == "my marks"
+
+
+def test_without_a_fence_that_is_said(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(fence, "version", lambda: 0)
+    assert main(["collect", str(tmp_path)]) == 1
+    assert "the answers could change all your files" in capsys.readouterr().err
+
+
+FENCED = """
+import os, socket, subprocess, sys
+from pathlib import Path
+from motiondiff_edu.course import fence
+inside, outside, parent = Path("inside").absolute(), Path("outside").absolute(), os.getppid()
+server = socket.create_server(("127.0.0.1", 0))
+assert fence.keep_within(inside) == bool(fence.version())
+os.chdir(inside)
+Path("mine").write_text("x"); os.mkdir("deep"); os.rename("mine", "deep/mine")
+Path("/dev/null").write_text("x")
+assert (outside / "file").read_text() == "theirs"
+def refused(*steps):
+    for step in steps:
+        try: step()
+        except OSError: continue
+        sys.exit(f"{step.__code__.co_consts} was not refused")
+refused(
+    lambda: (outside / "new").write_text("x"), lambda: (outside / "file").write_text("x"),
+    lambda: os.truncate(outside / "file", 0), lambda: os.remove(outside / "file"),
+    lambda: os.rename(outside / "file", "file"), lambda: os.mkdir(outside / "folder"),
+    lambda: os.symlink("file", outside / "link"), lambda: os.rmdir(outside / "empty"),
+)
+subprocess.run(["rm", "-rf", str(outside)], stderr=subprocess.DEVNULL)
+if fence.version() >= 4: refused(lambda: socket.create_connection(server.getsockname(), 5))
+if fence.version() >= 6: refused(lambda: os.kill(parent, 0))
+"""
+
+
+@pytest.mark.skipif(not fence.version(), reason="this system has no Landlock")
+def test_what_a_fence_refuses(tmp_path):
+    for name in ("inside", "outside/empty"):
+        (tmp_path / name).mkdir(parents=True)
+    (tmp_path / "outside" / "file").write_text("theirs")
+    done = subprocess.run(
+        [sys.executable, "-c", FENCED], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    assert sorted(path.name for path in (tmp_path / "outside").iterdir()) == ["empty", "file"]
+    assert (tmp_path / "outside" / "file").read_text() == "theirs"
+
+
+@pytest.mark.skipif(not fence.version(), reason="this system has no Landlock")
+def test_an_answer_removes_nothing_outside_its_folder(tmp_path):
+    (tmp_path / "keep").write_text("mine")
+    handed_in = tmp_path / "handed_in"
+    handed_in.mkdir()
+    with_cells(handed_in, "x", f"import shutil\nshutil.rmtree({str(tmp_path)!r}, True)\n{RIGHT}")
+    assert main(["collect", str(handed_in)]) == 0
+    assert (tmp_path / "keep").read_text() == "mine" and list(handed_in.rglob("*.ipynb"))
 
 
 def test_a_student_without_a_copy_is_named(tmp_path, capsys):

@@ -282,7 +282,7 @@ def collected(folder: Path, out: Path) -> tuple[str, list[dict]]:
     subprocess.run(["rm", "-rf", folder])  # Python cannot remove folders that lie so deep
     if done.returncode:
         raise RuntimeError(done.stderr)
-    with out.open(newline="") as file:
+    with out.open(newline="", encoding="utf-8-sig") as file:
         return done.stdout, list(csv.DictReader(file))
 
 
