@@ -5,8 +5,6 @@ bag of words and the regression have no timeline either: compare them with that 
 timeline the network is a fifth smaller; a step is then faster. Steps, sampler and captions are
 equal. The networks are half as wide as the shipped mover's and see a twelfth of the frames that it
 saw; so the numbers say what a choice is worth, and not how good a mover can be.
-The rows on the page were trained before the acts were mended, on fewer acts, and with attention
-between frames in the middle of the U-Net; they have not been trained again.
 Source: MoFusion 3; choices are ours
 """
 
