@@ -3,6 +3,7 @@
 import json
 import re
 import warnings
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -26,7 +27,7 @@ def mover_that(says: str = "", refuses: bool = False):
             raise TextError("what?")
         if says:
             warnings.warn(says, MotionWarning, stacklevel=1)
-        return SimpleNamespace(positions=positions)
+        return SimpleNamespace(positions=positions, about="kicks")
 
     return SimpleNamespace(act=act)
 
@@ -93,7 +94,11 @@ def test_edits_that_were_looked_at_are_counted_for_their_weights_alone():
 
 def test_sentences_that_were_looked_at_are_counted_for_their_weights_alone():
     record = json.loads(free.SEEN_FREE.read_text(encoding="utf-8"))
-    assert len(record["sentences"]) == 100 and free.seen_free_measures("others") == []
-    right, unsaid = (one.value for one in free.seen_free_measures(record["weights"]))
+    rows = record["sentences"]
+    made = [free.Tried("", one["refused"], (), (), one.get("read", "")) for one in rows]
+    assert len(rows) == 100 and free.seen_free_measures("others", made) == []
+    others = [*made[:50], replace(made[50], read="jumps up"), *made[51:]]
+    assert free.seen_free_measures(record["weights"], others) == []  # it was read otherwise
+    right, unsaid = (one.value for one in free.seen_free_measures(record["weights"], made))
     refused = sum(one["refused"] for one in record["sentences"]) / 100
     assert 0 < refused < 0.2 and 0.3 < right <= 1 - refused and unsaid < 1 - right - refused
