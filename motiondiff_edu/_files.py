@@ -15,6 +15,19 @@ if TYPE_CHECKING:
     import torch
 
 
+def home(path: str | Path) -> Path:
+    """The path with the home folder in place of ~.
+
+    Raises FileNotFoundError for an address, and for the home of a user who is not here.
+    """
+    there, text = Path(os.path.expanduser(path)), re.sub(":/+", "://", str(path), count=1)
+    if re.match(r"\w\w+://", text):
+        raise FileNotFoundError(f"{text} is an address: download the file first, then name it")
+    if there.parts[1:] and there.parts[0].startswith("~"):
+        raise FileNotFoundError(f"{path}: nobody here is called {there.parts[0][1:]}")
+    return there
+
+
 @contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
     """Yield a temporary name beside `path`; it is renamed to `path`, or removed after an error.
@@ -22,7 +35,7 @@ def replacing(path: str | Path) -> Iterator[Path]:
     with replacing("walk.bvh") as aside: aside.write_text(...)
     `~` is the home folder. What a killed process left of the same file is removed first.
     """
-    path = Path(path).expanduser()
+    path = home(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     _remove_left_over(path)
     aside = _aside(path)
@@ -42,7 +55,7 @@ def check_writable(path: str | Path) -> None:
 
     A temporary file is made and removed; folders that are not there are made with the file itself.
     """
-    path = Path(path).expanduser().absolute()
+    path = home(path).absolute()
     if os.path.isdir(path):  # a name that is too long is no folder
         raise OSError(f"{path} is a folder; give the name of a file in it")
     there = next((folder for folder in path.parents if folder.exists()), None)

@@ -9,18 +9,21 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import torch
 from as_typed import outcomes
 
 import motiondiff_edu as md
 from data_synth.music import compose
 from data_synth.walking import walk
+from motiondiff_edu.__main__ import main
+from motiondiff_edu.conditions import clip
 from motiondiff_edu.editing.masks import body_part
 from motiondiff_edu.editing.plausible import CALMER, DRAWS
 from motiondiff_edu.motion.motion import MotionError, MotionWarning
 from motiondiff_edu.motion.root_frame import FPS
 from motiondiff_edu.motion.skeleton import HIPS, TOES, Skeleton, joint_index
 from motiondiff_edu.performers.inbetweener import Inbetweener
-from motiondiff_edu.pretrained import shipped
+from motiondiff_edu.pretrained import checkpoints, shipped
 from motiondiff_edu.pretrained.shipped import LEARNT
 from motiondiff_edu.recipes.inbetweener import INBETWEENER
 from motiondiff_edu.widgets import motions as shown
@@ -336,6 +339,43 @@ def test_numbers_are_checked_before_weights_are_loaded(make, told, walked, monke
     monkeypatch.setattr(shipped, "_shipped", lambda kind: pytest.fail(f"{kind} was loaded"))
     with pytest.raises(ValueError, match=told):
         make(walked)
+
+
+@pytest.mark.parametrize(
+    "name, told",
+    [("~nouser/a.bvh", "~nouser/a.bvh: nobody here"), ("ftp://b.org/a.ogg", "is an address: down")],
+)
+def test_a_place_that_is_none_here_is_said(name, told, walked, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    dance = md.load("dancer").dance
+    for call in (md.read_motion, md.read_motions, walked.save, dance, md.load, clip.load):
+        with pytest.raises(FileNotFoundError, match=told):
+            call(name)
+    assert main(["info", name]) == 1 and not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda walked: md.load("walker").walk(walked, CONTROL),
+        lambda walked: md.load("dancer").dance(SOUND, sample_rate=16_000),
+        lambda walked: md.load("mover").act("walks forward"),
+        lambda walked: md.inbetween(walked[:40], md.keyframes(walked[:40], every=20)),
+        lambda walked: md.reconstruct(walked[:40], walked[:40].all_but(list(ARM))),
+        lambda walked: md.edit(walked[:40], "walks forward while clapping"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore::motiondiff_edu.motion.motion.MotionWarning")
+def test_another_default_type_of_torch_makes_the_same_motion(make, walked, monkeypatch):
+    usual = make(walked)
+    checkpoints._kept.cache_clear()  # so that the weights are read once more
+    torch.set_default_dtype(torch.float64)
+    try:
+        again = make(walked)
+        assert torch.get_default_dtype() == torch.float64
+    finally:
+        torch.set_default_dtype(torch.float32)
+    np.testing.assert_allclose(again.positions, usual.positions, atol=1e-4)
 
 
 def test_a_figure_that_lies_is_not_continued(walked):

@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from .._files import check_writable
+from .._files import check_writable, home
 from ..motion import registry
 from ..motion.arguments import (
     check_there,
@@ -104,11 +104,11 @@ def output_paths(
     if out.suffix.lower() not in registry.writers.names():
         what = f"unknown ending {out.suffix}" if out.suffix else "the name has no ending"
         raise ValueError(f"{out}: {what}; use one of {endings()}")
-    out = out.expanduser()
+    out = home(out)
     digits = len(str(samples))
     numbers = [""] if samples == 1 else [f"-{k:0{digits}d}" for k in range(1, samples + 1)]
     paths = [out.with_name(f"{out.stem}{number}{out.suffix}") for number in numbers]
-    given = (source or Path()).expanduser()  # the folder here, if no file is read
+    given = home(source or Path())  # the folder here, if no file is read
     for path in paths:
         if path.is_dir():
             raise ValueError(f"{path} is a folder; give the name of a file in it")
@@ -176,10 +176,10 @@ def files(given: Sequence[Path]) -> list[Path]:
     """
     found = []
     for path in given:
-        if not path.expanduser().is_dir():
+        if not home(path).is_dir():
             found.append(path)
             continue
-        inside = sorted(path.expanduser().iterdir())
+        inside = sorted(home(path).iterdir())
         motions = [one for one in inside if one.suffix.lower() in registry.readers.names()]
         if not motions:
             raise ValueError(f"{path}: no file in this folder can be read as a motion")
@@ -193,7 +193,7 @@ def one_by_one(args: argparse.Namespace) -> list[argparse.Namespace]:
     One file is written to --out; for several, or those of a folder, --out is a folder.
     Raises ValueError as `output_paths` does, before anything is read.
     """
-    given, out = files(args.file), args.out.expanduser()
+    given, out = files(args.file), home(args.out)
     alone = len(args.file) == 1 and given == args.file
     if not alone and out.suffix.lower() in registry.writers.names():
         raise ValueError(

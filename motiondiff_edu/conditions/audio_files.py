@@ -21,6 +21,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
+from .._files import home
 from ..motion.arguments import is_number
 from .mp3_frames import frame_at, promised, with_length
 from .music import SAMPLE_RATE
@@ -60,7 +61,7 @@ def read_audio(path: str | Path) -> Float[Tensor, "N"]:
     -1 to 1.
     Source: MoFusion 3.3.   Notebook: 11
     """
-    path = Path(path).expanduser()
+    path = home(path)
     if not path.is_file():
         what = (
             "is a folder; give the name of a sound file in it"

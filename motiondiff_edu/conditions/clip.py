@@ -22,6 +22,7 @@ from jaxtyping import Bool, Float, Int
 from torch import Tensor, nn
 from torch.nn.utils.rnn import pad_sequence
 
+from .._files import home
 from .text import Read, TextError, empty
 
 
@@ -64,6 +65,7 @@ class ClipEncoder(nn.Module):
 NAME = "openai/clip-vit-base-patch32"  # the usual one; the paper does not say which
 WIDTH = 512  # of its tokens
 EXTRA = 'CLIP needs the package transformers: pip install "motiondiff_edu[clip]"'
+MOST_LAYERS = 100  # the largest CLIP has 32
 BATCH = 128  # texts that are encoded together
 TOLD_APART_BY = "a person waves"
 ALIKE = 0.02  # numbers of `sample`: two machines differ by a thousandth of this
@@ -195,10 +197,10 @@ def load(where: str | Path = NAME, download: bool = False) -> ClipModel:
     Raises NoTransformers without the extra, and ClipError for what is missing or is no CLIP.
     """
     try:
-        from transformers import CLIPTextModel, CLIPTokenizer
+        from transformers import CLIPTextConfig, CLIPTextModel, CLIPTokenizer
     except ImportError as error:
         raise NoTransformers(EXTRA) from error
-    folder = Path(where).expanduser()
+    folder = home(where)
     fetch = download and not folder.is_dir()
     place = folder if folder.is_dir() else where if fetch else _kept(str(where))
     if place is None:
@@ -209,6 +211,8 @@ def load(where: str | Path = NAME, download: bool = False) -> ClipModel:
         )
     try:
         with _quiet():
+            if isinstance(place, Path) and not _fits(CLIPTextConfig.from_pretrained(place), place):
+                raise ValueError("config.json asks for more weights than the files have")
             loaded: Any = CLIPTextModel.from_pretrained(
                 place, dtype=torch.float32, output_loading_info=True, local_files_only=not fetch
             )
@@ -240,11 +244,19 @@ def check(clip: ClipModel, width: int, sample: Sequence[float] | None = None) ->
             f"CLIP, which has {width}"
         )
     apart = [abs(a - b) for a, b in zip(sample or (), clip.sample() if sample else (), strict=True)]
-    if max(apart, default=0.0) > ALIKE:
+    if not all(one <= ALIKE for one in apart):  # NaN is neither near nor far
         raise ClipError(
             f"{clip.name} gives other tokens than the CLIP that the network was trained with; give "
             "that one"
         )
+
+
+def _fits(config: Any, folder: Path) -> bool:
+    """Whether the files of a folder are large enough for the weights that a config asks for."""
+    width, layers = config.hidden_size, config.num_hidden_layers
+    weights = layers * (4 * width**2 + 2 * width * config.intermediate_size)
+    weights += (config.vocab_size + config.max_position_embeddings) * width
+    return 0 < layers <= MOST_LAYERS and weights <= sum(x.stat().st_size for x in folder.iterdir())
 
 
 def _kept(name: str) -> Path | None:

@@ -11,8 +11,11 @@ import os
 import sys
 from collections.abc import Iterable
 
-CREATE, ADD, RESTRICT = 444, 445, 446  # system calls, of the same number on every processor
-BENEATH, VERSION, NO_NEW_PRIVILEGES = 1, 1, 38
+# system calls, of the same number on every processor
+CREATE = 444
+ADD, RESTRICT = 445, 446
+BENEATH, VERSION = 1, 1
+NO_NEW_PRIVILEGES = 38
 WRITE = 1 << 1
 # by the version of Landlock that has them first: writes of files, in folders, and across them
 FILES = {1: WRITE | sum(1 << bit for bit in range(4, 13)), 2: 1 << 13, 3: 1 << 14}

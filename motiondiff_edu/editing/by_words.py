@@ -29,7 +29,7 @@ from ..motion.root_frame import estimate_root
 from ..motion.skeleton import HIPS, TOES, J
 from ..performers.continuation import leg_size
 from ..performers.mover import ETA, Mover
-from ..performers.performer import STEPS, Watch
+from ..performers.performer import STEPS, Watch, float32
 from ..performers.text_mofusion import Texts
 
 STRENGTH = 0.3  # share of the diffusion steps that the motion is noised by
@@ -37,6 +37,7 @@ FEET = (HIPS, *TOES)  # known where the legs are kept
 FADE = 10  # frames within which a generated part joins a kept span of time
 
 
+@float32()
 def edit_by_words(
     mover: Mover,
     positions: Float[np.ndarray, "T 21 3"],

@@ -23,6 +23,7 @@ from ..motion.dance_frame import PATH
 from ..motion.known import checked_given, given_features, with_given
 from ..motion.skeleton import J
 from ..performers.dancer import STEPS, Dancer
+from ..performers.performer import float32
 
 # of `guided`; a larger value follows sparse keyframes better, but the motion jumps more at the ends
 # of a gap
@@ -34,6 +35,7 @@ Known = Bool[Tensor, "B T 63"]
 Steer = Callable[[Denoiser, Schedule, Tensor, Tensor], Denoiser]
 
 
+@float32()
 def inpaint(
     dancer: Dancer,
     positions: Float[np.ndarray, "T 21 3"],

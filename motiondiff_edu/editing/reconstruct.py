@@ -25,7 +25,7 @@ from ..motion.motion import MotionError, MotionWarning
 from ..motion.root_frame import FPS, smoothed_root, to_root_frame, to_world
 from ..motion.skeleton import HIPS, JOINTS, MIRROR, J
 from ..performers.continuation import farthest, unlike_training
-from ..performers.performer import STEPS
+from ..performers.performer import STEPS, float32
 from ..reconstruction import Rollout, Stop
 from ..rollout import SLACK, AnyWalker, Units
 
@@ -151,6 +151,7 @@ def warn_of_unlike(
         )
 
 
+@float32()
 def _once(
     rollout: Rollout,
     guess: Float[Tensor, "T D"],

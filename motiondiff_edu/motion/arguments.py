@@ -4,7 +4,10 @@ import math
 from numbers import Integral, Real
 from pathlib import Path
 
+from .._files import home
+
 LONGEST = 3600.0  # seconds: an hour
+MOST_FRAMES = 432_000  # of a file of motion: an hour at 120 frames/s
 MOST_SAMPLES = 256  # made at once, in memory
 GUIDANCE = 20  # the largest weight; figures break long before it
 
@@ -75,9 +78,15 @@ def checked_strength(strength: float) -> float:
     return float(strength)
 
 
+def too_many_frames(frames: int) -> str:
+    """Why a file with so many frames is not read, in words; "" if it is."""
+    words = f"{frames:,} frames, and {MOST_FRAMES:,} at most are read; cut it into shorter takes"
+    return words if frames > MOST_FRAMES else ""
+
+
 def check_there(path: Path) -> None:
     """Raise FileNotFoundError if there is neither a file nor a folder of that name."""
-    if not path.expanduser().is_file() and not path.expanduser().is_dir():
+    if not home(path).is_file() and not home(path).is_dir():
         where = "" if path.is_absolute() else f" in {Path.cwd()}"
         raise FileNotFoundError(f"there is no file {path}{where}; check the spelling")
 

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float
 
+from .._files import home
 from . import registry
 from .arguments import MotionError, MotionWarning, checked_rate, is_number
 from .check import lies_down, unlike_a_body
@@ -358,7 +359,7 @@ def checked_path(path: str | Path) -> Path:
     """
     if not isinstance(path, str | Path):
         raise TypeError(f"a file is named by a text or a Path, not by {path!r:.60}")
-    path = Path(path).expanduser()
+    path = home(path)
     if path.is_dir():
         raise MotionError(f"{path} is a folder; give the name of a file in it")
     return path

@@ -33,7 +33,7 @@ from ..motion.retarget import SHORTEST
 from ..motion.scaler import Scaler
 from .dance_windows import FPS, mel_frames
 from .networks import DancerNetwork, register
-from .performer import Performer, Watch, bar, evaluating, generators, sample_motion
+from .performer import Performer, Watch, bar, evaluating, float32, generators, sample_motion
 
 # defaults of DDIM; with ten steps, dances to a song differ less (docs/RESULTS_ALL.md:
 # dancer.steps10, dancer.steps50), and with less fresh noise, too
@@ -207,6 +207,7 @@ class Dancer(Performer):
         return made if samples > 1 else made[0]
 
     @torch.no_grad()
+    @float32()
     def dance_mel(
         self,
         mel: Float[Tensor, "B M C"],

@@ -26,7 +26,7 @@ from ..mofusion import MoFusion, MoFusionConfig
 from ..motion.known import checked_given, given_features, with_given
 from ..motion.scaler import Scaler
 from .networks import register
-from .performer import STEPS, Performer, Watch
+from .performer import STEPS, Performer, Watch, float32
 
 
 @dataclass(frozen=True)
@@ -94,6 +94,7 @@ class Inbetweener(Performer):
         """`denoise(r_s, s) -> eps_hat` for remainders around these lines."""
         return self._denoiser(self.model, lines)
 
+    @float32()
     def fill(
         self,
         positions: Float[np.ndarray, "T 21 3"],

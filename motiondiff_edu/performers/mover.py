@@ -37,7 +37,7 @@ from ..motion.scaler import Scaler
 from ..motion.skeleton import BONE_LENGTHS
 from .described_windows import GRID
 from .networks import MoverConfig, MoverNetwork
-from .performer import STEPS, Performer, Watch, bar, evaluating, generators, sample_motion
+from .performer import STEPS, Performer, Watch, bar, evaluating, float32, generators, sample_motion
 from .planned_mofusion import PlannedMoFusion
 from .text_mofusion import TextMoFusionConfig, Texts
 
@@ -210,6 +210,7 @@ class Mover(Performer):
         return isinstance(self.model, PlannedMoFusion)
 
     @torch.no_grad()
+    @float32()
     def plans(
         self,
         ids: Texts,
@@ -293,6 +294,7 @@ class Mover(Performer):
             made.append(Motion(act, FPS, source=f"{found.text:.60}", notes=notes, about=about))
         return made if samples > 1 else made[0]
 
+    @float32()
     def _acts(
         self,
         found: Read,
@@ -325,6 +327,7 @@ class Mover(Performer):
         return [clean_up(x, FPS, body=Body.of(x, bones=BONE_LENGTHS))[:frames] for x in acts]
 
     @torch.no_grad()
+    @float32()
     def act_ids(
         self,
         ids: Texts,

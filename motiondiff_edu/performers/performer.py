@@ -27,6 +27,17 @@ Watch = Callable[[Iterable[Step]], Iterable[Step]]  # wraps a loop, as `bar` doe
 STEPS = 10
 
 
+@contextmanager
+def float32() -> Iterator[None]:
+    """torch's default type is float32 in a `with`, or in a function that this decorates."""
+    usual = torch.get_default_dtype()
+    torch.set_default_dtype(torch.float32)
+    try:
+        yield
+    finally:
+        torch.set_default_dtype(usual)
+
+
 def generators(seed: int, count: int, *also: int) -> list[torch.Generator]:
     """A generator for each of `count` samples. The first ones are those of a smaller count.
 

@@ -25,7 +25,7 @@ from ..motion.skeleton import J
 from ..rollout import WindowSampler
 from .continuation import Start, finish_continuation, in_words, resize_motion, unlike_training
 from .networks import WalkerConfig, WalkerNetwork, register
-from .performer import STEPS, Performer, bar, evaluating, generators
+from .performer import STEPS, Performer, bar, evaluating, float32, generators
 
 register("walker", MoDiff, MoDiffConfig)
 
@@ -126,6 +126,7 @@ class Walker(Performer):
         Notebook: 08
         """
 
+        @float32()
         def sample(past: Tensor, control: Tensor, generator: Generators) -> Tensor:
             with torch.inference_mode():
                 denoise = self.denoiser(past, control)

@@ -27,7 +27,7 @@ from ..performers.dancer import Dancer
 from ..performers.inbetweener import Inbetweener
 from ..performers.mover import Mover
 from ..performers.networks import kind_of, networks_of
-from ..performers.performer import Performer
+from ..performers.performer import Performer, float32
 from ..performers.walker import Walker
 from .weights_file import (
     CheckpointError,
@@ -120,6 +120,7 @@ def bits_of(path: str | Path) -> int:
     return 8 if "I8" in kinds else 16 if "F16" in kinds else 32
 
 
+@float32()
 def load(name: str | Path, clip: ClipModel | str | Path | None = None) -> AnyPerformer:
     """A performer: shipped weights by name ("walker", "dancer", "mover" ...), or your own file.
 

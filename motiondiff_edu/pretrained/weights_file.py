@@ -24,7 +24,7 @@ from safetensors import SafetensorError, safe_open
 from safetensors.torch import save_file
 from torch import Tensor
 
-from .._files import digest_of_tensors, digest_of_texts, replacing
+from .._files import digest_of_tensors, digest_of_texts, home, replacing
 from ..performers.networks import Config
 
 # ---- files ---------------------------------------------------------------------------------------
@@ -48,7 +48,7 @@ def write_weights(
 
     The files get temporary names first and are then renamed.
     """
-    path = Path(path).expanduser()
+    path = home(path)
     metadata = settings | {"config": json.dumps(config), "card": json.dumps(card)}
     tensors = {k: v.detach().cpu().clone().contiguous() for k, v in tensors.items()}
     with replacing(path) as aside:
@@ -65,7 +65,7 @@ def read_weights(path: str | Path, kinds: Mapping[str, Assemble[Read]]) -> Read:
     `kinds` has a function for each format that is accepted.
     Raises CheckpointError for a file that is missing, damaged, or of another format.
     """
-    path = Path(path).expanduser()
+    path = home(path)
     metadata, tensors = _opened(path)
     assemble = kinds.get(metadata.get("format", ""))
     if assemble is None:

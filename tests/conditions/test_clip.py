@@ -1,8 +1,11 @@
 """CLIP's tokens are those of transformers itself, for each text alone; nothing asks the network."""
 
+import copy
+import json
 import shutil
 import socket
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -195,6 +198,9 @@ def test_half_a_download_is_begun_again_and_not_taken_for_a_clip(folder, tmp_pat
     assert asked == ["a/b"]
 
 
+SIZES = {"num_hidden_layers": 1_000_000, "hidden_size": 40_000, "intermediate_size": 5_000_000}
+
+
 def damaged(folder: Path, target: Path, what: str) -> Path:
     """A copy of a CLIP with something wrong."""
     shutil.copytree(folder, target)
@@ -211,6 +217,9 @@ def damaged(folder: Path, target: Path, what: str) -> Path:
     elif what == "no tokenizer":
         (target / "tokenizer.json").unlink()
         (target / "tokenizer_config.json").unlink()
+    elif what in SIZES:
+        config = json.loads((target / "config.json").read_text())
+        (target / "config.json").write_text(json.dumps(config | {what: SIZES[what]}))
     elif what == "small vocabulary":
         tiny_clip.made(target, vocab_size=100)
     return target
@@ -222,6 +231,7 @@ def damaged(folder: Path, target: Path, what: str) -> Path:
         ("another kind", "is no CLIP: it lacks"),
         ("no weights", "has no CLIP that can be used"),
         ("cut weights", "has no CLIP that can be used"),
+        *((size, "asks for more weights than the files have") for size in SIZES),
         ("no tokenizer", "has no tokenizer that fits: it knows 2 tokens"),
         (
             "small vocabulary",
@@ -247,6 +257,11 @@ def test_another_clip_is_told_apart(tiny, tmp_path):
     clip.check(other, tiny_clip.WIDTH)  # nothing is known of the one that is wanted
     with pytest.raises(clip.ClipError, match="gives other tokens than the CLIP"):
         clip.check(other, tiny_clip.WIDTH, tiny.sample())
+    silent = replace(tiny, name="silent", model=copy.deepcopy(tiny.model))
+    for weights in silent.model.parameters():
+        weights.fill_(torch.nan)
+    with pytest.raises(clip.ClipError, match="silent gives other tokens than the CLIP"):
+        clip.check(silent, tiny_clip.WIDTH, tiny.sample())
     with pytest.raises(clip.ClipError, match="has tokens of 32 numbers; .* which has 512"):
         clip.check(tiny, 512, tiny.sample())
 

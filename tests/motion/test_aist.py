@@ -6,13 +6,16 @@ What is read, in which unit, and that a hostile pickle is refused before it runs
 import codecs
 import os
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy._core.multiarray import _reconstruct
 from numpy._core.numeric import _frombuffer as frombuffer
 
+from motiondiff_edu.motion.formats import aist
 from motiondiff_edu.motion.formats.aist import AistError, read_keypoints
+from motiondiff_edu.motion.formats.files import read_motion
 
 NAME = "gJS_sBM_cAll_d03_mJS4_ch06.pkl"
 
@@ -174,7 +177,8 @@ def test_a_small_pickle_cannot_ask_for_much_memory_or_time(tmp_path):
     place = (2**31 - 1).to_bytes(4, "little")
     many = b"\x80\x02" + b"]0" * 10**5
     key = b"\x80\x02}" + pickle.dumps(nested, 2)[2:-1] + b"K\x01s."  # {nested: 1}
-    for raw in (key, b"\x80\x02]r" + place + b".", many):
+    alike = pickle.dumps({k * (2**61 - 1): 0 for k in range(24_000)})  # all hashes are 0
+    for raw in (key, b"\x80\x02]r" + place + b".", many, alike):
         (tmp_path / NAME).write_bytes(raw)
         with pytest.raises(AistError, match="more parts than arrays need"):
             read_keypoints(tmp_path / NAME)
@@ -230,6 +234,16 @@ def test_other_files_are_told_apart(tmp_path, real_data):
         read_keypoints(real_data / "aist" / "motions" / "gBR_sBM_cAll_d06_mBR2_ch06.pkl")
     with pytest.raises(FileNotFoundError):
         read_keypoints(tmp_path / "none.pkl")
+
+
+def test_too_many_frames_and_too_large_a_file_are_refused(tmp_path, monkeypatch):
+    path = written(tmp_path, {"keypoints3d_optim": np.zeros((432_001, 1), np.int8)})
+    with pytest.raises(AistError, match=f"{NAME}.* 432,001 frames, and 432,000 at most are read"):
+        read_keypoints(path)
+    monkeypatch.setattr(aist, "LARGEST", 400_000)
+    monkeypatch.setattr(Path, "read_bytes", lambda _: pytest.fail("it was read"))
+    with pytest.raises(AistError, match="larger than 0 MB"):
+        read_motion(path)
 
 
 def test_places_beyond_ten_kilometres_and_endless_names_are_refused(tmp_path):

@@ -94,6 +94,18 @@ def refused(tmp_path: Path, text: str | bytes) -> BvhError:
         (lambda s: s.replace("ROOT Hips\n{", "ROOT Hips\n"), 4, None, "outside the braces"),
         (lambda s: s.replace("MOTION", "}\nMOTION"), 21, None, "no matching '{'"),
         (lambda s: s.replace("Frames: 3", "Frames: many"), 22, None, "number of frames"),
+        (
+            lambda s: s.replace("Frames: 3", "Frames: 1000000000"),
+            22,
+            None,
+            "1,000,000,000 frames, and 432,000 at most are read",
+        ),
+        (
+            lambda s: s.replace("JOINT Chest", "JOINT " + "C" * 100_000),
+            15,
+            None,
+            "a name of 100,000 letters",
+        ),
         (lambda s: s.replace("Frames: 3\n", ""), 22, None, "'Frames:'"),
         (lambda s: s.replace("Frame Time: 0.04", "Frame Time: 1"), 23, None, "fps="),
         (lambda s: s.replace("Frame Time: 0.04", "Frame Time: soon"), 23, None, "not a number"),

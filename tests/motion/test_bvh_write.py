@@ -94,6 +94,14 @@ def test_euler_angles_are_the_rotation_and_continuous():
     assert np.abs(found - np.degrees(angles)).max() < 1e-6
 
 
+def test_where_two_angles_do_the_same_nothing_is_said(recwarn):
+    angles = np.tile([0.3, np.pi / 2, 0.2], (4, 1, 1))
+    turns = euler_to_matrix(angles, "ZXY")
+    found = np.radians(euler_zxy(turns))
+    np.testing.assert_allclose(euler_to_matrix(found, "ZXY"), turns, atol=1e-7)
+    assert [str(one.message) for one in recwarn] == []
+
+
 def test_kabsch_finds_the_rotation():
     rng = np.random.default_rng(2)
     rest = rng.normal(size=(3, 3))

@@ -360,10 +360,14 @@ def test_other_files_are_refused(tmp_path):
     (tmp_path / "head.npy").write_bytes(whole[:20])
     (tmp_path / "page.npy").write_bytes(b"<html>404</html>")
     (tmp_path / "void.npy").write_bytes(b"")
+    with (tmp_path / "many.npy").open("wb") as file:  # a header alone
+        header = {"descr": "<f4", "fortran_order": False, "shape": (22, 3, 10**9)}
+        np.lib.format.write_array_header_1_0(file, header)
     for name, told in (
         ("objects.npy", r"Python objects.*If you trust it.*allow_pickle=True\)\.item\(\)"),
         ("cut.npy", "damaged or cut off"),
         ("head.npy", "damaged or cut off"),
+        ("many.npy", r"\(22, 3, 1000000000\) has 1,000,000,000 frames, and 432,000 at most"),
         ("page.npy", "is no .npy file"),
         ("void.npy", "is no .npy file"),
     ):

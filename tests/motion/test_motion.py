@@ -2,6 +2,7 @@
 
 import json
 import os
+import tracemalloc
 import zipfile
 from dataclasses import replace
 
@@ -12,13 +13,15 @@ from synthetic_walk import walk as figure
 from data_synth.dancing.write import main as write_dances
 from data_synth.walking import walk
 from data_synth.walking.write import main as write_walks
+from motiondiff_edu.motion.arguments import too_many_frames
+from motiondiff_edu.motion.formats import files
 from motiondiff_edu.motion.formats.aist import AistError
 from motiondiff_edu.motion.formats.bvh import BvhError, read_bvh
 from motiondiff_edu.motion.formats.bvh.write import write_bvh
 from motiondiff_edu.motion.formats.files import read_motion
 from motiondiff_edu.motion.motion import Motion, MotionError, MotionWarning
 from motiondiff_edu.motion.registry import Registry
-from motiondiff_edu.motion.skeleton import JOINTS, Skeleton
+from motiondiff_edu.motion.skeleton import JOINTS, PARENTS, Skeleton
 
 STICK = Skeleton(("root", "knee", "toe"), (-1, 0, 1))
 CONTROL = np.tile([1.1, 0.1, 0.4], (37, 1))
@@ -344,6 +347,34 @@ def _huge(path):
         packed.writestr("positions.npy", head + shape)
 
 
+def test_too_many_frames_are_refused_before_they_take_memory(tmp_path):
+    path = tmp_path / "many.npz"
+    np.savez_compressed(path, positions=np.zeros((432_001, 21, 3), np.float32), fps=20.0)
+    tracemalloc.start()
+    with pytest.raises(MotionError, match=r"many.npz.* 432,001 frames, and 432,000 at most are"):
+        read_motion(path)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert path.stat().st_size < 200_000 and most < 5_000_000 < 432_001 * 63 * 4
+    assert files.LARGEST < 975_000_000  # whatever fills it: a file of 196 kB took so much
+    assert not too_many_frames(10 * 60 * 120)  # ten minutes of a studio's
+    quiet = Motion(P, 20.0, audio=np.zeros(432_001), sample_rate=48_000)
+    assert len(read_motion(quiet.save(tmp_path / "quiet.npz")).audio) == 432_001
+
+
+def test_a_long_name_is_not_printed_whole(tmp_path):
+    names = ["n" * 100_000, *JOINTS[1:]]
+    for written in ({}, {"parents": PARENTS, "format": "motiondiff_edu motion 1"}):
+        np.savez(tmp_path / "m.npz", positions=walking().positions, fps=20, names=names, **written)
+        with pytest.raises(MotionError, match=r"m.npz: the name n+\.\.\. has 100,000 ") as caught:
+            read_motion(tmp_path / "m.npz")
+        assert len(str(caught.value)) < 200
+    np.savez(tmp_path / "m.npz", **{"n" * 60_000: P})
+    with pytest.raises(MotionError, match="m.npz contains nnn") as caught:
+        read_motion(tmp_path / "m.npz")
+    assert len(str(caught.value)) < 400
+
+
 WRONG_FILES = {
     "text.npz": (lambda p: p.write_text("hello"), "cannot be read as npz"),
     "empty.npz": (lambda p: p.write_bytes(b""), "cannot be read as npz"),
@@ -381,6 +412,9 @@ def test_no_file_and_a_folder(tmp_path, monkeypatch):
         FileNotFoundError, match="there is no file nope.bvh in .*check the spelling"
     ):
         read_motion("nope.bvh")
+    walking().save("m.bvh")
+    (tmp_path / "m.bvh").rename(tmp_path / ".bvh")
+    assert len(read_motion(".bvh")) == 37
     (tmp_path / "folder.bvh").mkdir()
     with pytest.raises(MotionError, match="folder.bvh is a folder; give the name of a file in it"):
         walking().save(tmp_path / "folder.bvh")

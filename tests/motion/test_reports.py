@@ -210,8 +210,11 @@ def test_names_of_another_language_are_listed(reports):
 
 
 def test_an_address_is_told_to_be_one():
-    with pytest.raises(ValueError, match="is an address: download the file first"):
-        md.read_motion("https://example.org/walk.bvh")
+    for address in ("https://example.org/walk.bvh", Path("https://example.org/walk.bvh")):
+        with pytest.raises(
+            OSError, match="^https://example.org/walk.bvh is an address: download the file first"
+        ):
+            md.read_motion(address)
 
 
 def test_what_is_right_is_read_without_a_word(tmp_path, walked):

@@ -8,18 +8,25 @@ looked.read_over_parsing    time of reading the motions, over that of parsing th
 """
 
 import re
+import shutil
 import time
 import warnings
 from collections.abc import Callable
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
+import nbformat
 import numpy as np
+from nbconvert import HTMLExporter
+from nbconvert.preprocessors import ExecutePreprocessor
 
 import motiondiff_edu as md
 from motiondiff_edu.conditions.audio_files import read_audio, samples_of
+from motiondiff_edu.course.export import still_alive
 from motiondiff_edu.motion.formats.bvh import read_bvh
 from motiondiff_edu.motion.formats.bvh.frames import rate
 from motiondiff_edu.motion.motion import Motion
+from motiondiff_edu.motion.skeleton import joint_index
 from motiondiff_edu.recipes.recordings import recording_files
 
 from .walks.scores import Measure, measure_of
@@ -108,29 +115,68 @@ EXPECTED = {
 }
 
 
-def reported(folder: Path) -> dict[str, bool]:
-    """Of each report, whether it ends as it should."""
+SENTENCES = {  # of report 37, with the hands that wave
+    "a person walks backwards and waves with both hands": ("Left", "Right"),
+    "walks backwards while waving with the left hand": ("Left",),
+}
+
+
+def reported(folder: Path, sounds: dict[str, tuple[float, str]]) -> dict[str, bool]:
+    """Of each report, whether it ends as it should.  `sounds` as `heard` gives them."""
     right = {}
     for name, expected in EXPECTED.items():
         path = folder / name
         right[name] = expected(path, *answered(lambda path=path: md.read_motion(path)))
-    for name in SECONDS_OF:
-        right[name] = (
-            not lost(folder, name) and not answered(lambda n=name: read_audio(folder / n))[1]
-        )
+    right |= {name: not missing and not said for name, (missing, said) in sounds.items()}
     samples = np.zeros(6 * 22_050)
     right["29"] = "sample_rate" in answered(lambda: samples_of(samples))[1]
+    right["30"] = players_on_the_page(folder) == 2
     right["36"] = [rate(seconds) for seconds in (0.0333, 0.0083, 0.033)] == [30, 120, 30]
+    right["37"] = all(
+        shown_or_told(text, hands, seed) for text, hands in SENTENCES.items() for seed in range(3)
+    )
     right["38"] = "is an address: download" in answered(
         lambda: md.read_motion("https://example.org/walk.bvh"))[1]  # fmt: skip
     return right
 
 
-def lost(folder: Path, name: str) -> float:
-    """Seconds of a sound that are not heard; a twentieth is the padding of its encoder."""
-    heard, _ = answered(lambda: read_audio(folder / name))
-    missing = SECONDS_OF[name] - (0 if heard is None else len(heard) / 16_000)
-    return missing if missing > 0.05 else 0.0
+def heard(folder: Path) -> dict[str, tuple[float, str]]:
+    """Of each reported sound, the seconds that are not heard, and what was said.
+
+    A twentieth of a second is the padding of its encoder, and counts as 0.
+    """
+    found = {}
+    for name, seconds in SECONDS_OF.items():
+        samples, said = answered(lambda name=name: read_audio(folder / name))
+        missing = seconds - (0 if samples is None else len(samples) / 16_000)
+        found[name] = (missing if missing > 0.05 else 0.0, said)
+    return found
+
+
+def players_on_the_page(folder: Path) -> int:
+    """How many figures move on the page of the notebook of report 30, run and exported."""
+    notebook = nbformat.read(folder / "30_small.ipynb", as_version=4)
+    with TemporaryDirectory() as place:
+        shutil.copy(folder / BASE, place)
+        run = ExecutePreprocessor(timeout=600, kernel_name="python3")
+        run.preprocess(notebook, {"metadata": {"path": place}})
+    still_alive(notebook)
+    return HTMLExporter().from_notebook_node(notebook)[0].count("<iframe")
+
+
+def shown_or_told(text: str, hands: tuple[str, ...], seed: int) -> bool:
+    """Whether a figure walks back and holds these hands over their shoulders, or a warning says
+    what is not to be seen."""
+    made, said = answered(lambda: md.load("mover").act(text, seed=seed))
+    if not isinstance(made, Motion) or "; but " in said:
+        return bool(said)
+    points = made.positions
+    up = [
+        points[:, joint_index(f"{side}Hand"), 1] > points[:, joint_index(f"{side}Arm"), 1]
+        for side in hands
+    ]
+    back = points[0, 0, 2] - points[-1, 0, 2]  # metres; it begins facing z
+    return bool(back > 1 and np.all(np.mean(up, axis=1) > 0.5))
 
 
 def in_words(path: Path) -> bool:
@@ -161,19 +207,20 @@ def file_records(command: str, quick: bool) -> list[dict]:
     reports = root / "reports"
     every = [p for p in sorted(root.rglob("*")) if p.suffix.lower() in (*MOTIONS, *SOUNDS)]
     every = every[:: 10 if quick else 1]
-    right = reported(reports)
+    sounds = heard(reports)
+    right = reported(reports, sounds)
     for name in (name for name, one in right.items() if not one):
         print(f"not as it should be: {name}")
     whole = [
         path for path in every if path.parent.name in ("bvh", "cmu30") and path.suffix == ".bvh"
     ]
+    lost = [missing for missing, _ in sounds.values()]
+    read = [path.name in sounds or in_words(path) for path in every]
     spent = np.array([times(path) for path in whole]).T
     found: list[Measure] = [
         measure_of("reports_right", "share", np.mean, np.array(list(right.values()), float)),
-        measure_of(
-            "sound_seconds_lost", "s", np.sum, np.array([lost(reports, n) for n in SECONDS_OF])
-        ),
-        measure_of("read_share", "share", np.mean, np.array([in_words(p) for p in every], float)),
+        measure_of("sound_seconds_lost", "s", np.sum, np.array(lost)),
+        measure_of("read_share", "share", np.mean, np.array(read, float)),
         measure_of("read_over_parsing", "x", lambda a, b: a.sum() / b.sum(), *spent),
     ]
     about = {"reports": len(right), "files": len(every)}

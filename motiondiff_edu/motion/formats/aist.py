@@ -19,6 +19,9 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
+from ..._files import home
+from ..arguments import too_many_frames
+
 AIST_FPS = 60.0
 COCO = (
     "Nose",
@@ -40,7 +43,7 @@ COCO = (
     "RightAnkle",
 )
 LARGEST = 300_000_000  # bytes
-MOST_STEPS = 100_000  # of a pickle; one of arrays has some dozens
+MOST_STEPS = 5_000  # of a pickle; one of arrays has some dozens
 MOST_AGAIN = 10  # tuples that a pickle uses once more; one of arrays uses none
 FARTHEST = 1e6  # centimetres: ten kilometres
 FLOOR_PERCENTILE = 1.0
@@ -74,13 +77,9 @@ def read_keypoints(path: str | Path) -> Keypoints:
     Raises AistError for any other file: other pickles (reading stops at the first foreign name),
     .npy features, other shapes. Raises FileNotFoundError for a missing file.
     """
-    path = Path(path).expanduser()
+    path = home(path)
     if path.is_dir():
         raise AistError(f"{path.name}: this is a folder; give one of the .pkl files in it.")
-    if path.stat().st_size > LARGEST:
-        raise AistError(
-            f"{path.name}: larger than {LARGEST // 1_000_000} MB, so it is not a keypoints file."
-        )
     content = _load(path)
     key = "keypoints3d_optim"
     cm = _array(content, key, path.name)
@@ -165,6 +164,8 @@ class _Array:
         whole = isinstance(shape, tuple) and all(type(n) is int and n >= 0 for n in shape)
         if not (whole and isinstance(dtype, _Numbers) and isinstance(raw, bytes | bytearray)):
             raise AistError("it has an array that is not made of a shape and of numbers")
+        if words := too_many_frames(max(shape, default=0)):
+            raise AistError(f"it has an array of {words}")
         numbers = np.dtype(dtype.code)
         if math.prod(shape) * numbers.itemsize != len(raw):
             raise AistError(f"it has an array whose shape does not fit its {len(raw)} bytes")
@@ -226,6 +227,10 @@ def _check_cost(raw: bytes) -> None:
 
 def _load(path: Path):
     """The content of the file.  Raises AistError, which says what sort of file it is."""
+    if path.stat().st_size > LARGEST:
+        raise AistError(
+            f"{path.name}: larger than {LARGEST // 1_000_000} MB, so it is not a keypoints file."
+        )
     raw = path.read_bytes()
     if raw.startswith(b"\x93NUMPY"):
         raise AistError(f"{path.name}: {_describe_npy(raw)}")

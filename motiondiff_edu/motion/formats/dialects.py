@@ -15,7 +15,7 @@ import numpy as np
 
 from ..skeleton import JOINTS
 from .bvh import Bvh
-from .bvh.tokens import BvhError
+from .bvh.tokens import LONGEST_NAME, BvhError
 
 # The joints of one side, best spelling first. The side is a word or a letter, before or after the
 # name (LeftKnee, Knee_L). One word can mean two joints: LeftHip is a thigh or a corner of the
@@ -45,7 +45,6 @@ CENTRAL = {
 PREFIX = re.compile(r"^(bip\d+|mixamorig\d*|character\d*)")
 CENTRE = re.compile(r"^c[_.\- ]+(?=.)", re.IGNORECASE)  # the middle, as in J_Bip_C_Hips
 ENDS_A_WORD = "_.- :|"
-LONGEST_NAME = 200  # letters of a name that are looked at
 SHARED = 0.5  # of a file's names: what so many have in common is no part of a joint's name
 # The joints that a file must have; the others can be computed from these.
 NEEDED = ["Hips", "Head"]
@@ -184,13 +183,13 @@ def check_mapping(mapping: Mapping[str, str], bvh: Bvh) -> dict[str, str]:
     wrong = [name for name in mapping if name not in JOINTS]
     if wrong:
         raise BvhError(
-            f"the mapping names '{wrong[0]}', which is no joint of the course. Its joints are "
+            f"the mapping names '{wrong[0]:.80}', which is no joint of the course. Its joints are "
             f"{', '.join(JOINTS)}."
         )
     missing = [name for name in mapping.values() if name not in bvh.names]
     if missing:
         raise BvhError(
-            f"the mapping names '{missing[0]}', but the file has: {', '.join(bvh.names)}.",
+            f"the mapping names '{missing[0]:.80}', but the file has: {', '.join(bvh.names)}.",
             bvh.source,
         )
     return guess_mapping(bvh, given=mapping)

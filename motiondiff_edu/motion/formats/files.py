@@ -3,7 +3,6 @@
 Notebook: 00
 """
 
-import re
 import warnings
 import zipfile
 from collections.abc import Mapping
@@ -12,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..._files import replacing
+from ..._files import home, replacing
 from .. import registry
 from ..arguments import check_there
 from ..check import SHORT, lies_down, unlike_a_body
@@ -24,9 +23,10 @@ from ..root_frame import FPS
 from ..skeleton import COURSE, JOINTS, Skeleton
 from ..upright import AXES
 from .aist import COCO, full_pose, read_keypoints
+from .bvh.tokens import LONGEST_NAME
 from .bvh.write import write_bvh
 from .humanml3d import motion_of_smpl
-from .joints import mended_joints
+from .joints import check_header, mended_joints
 from .keypoints import motion_of_keypoints
 
 FORMAT = "motiondiff_edu motion 1"
@@ -51,7 +51,7 @@ TAKES = {  # which option is for which files
     "unit": (".npz", ".npy"),
 }
 EDGE_FPS = 30.0
-LARGEST = 2_000_000_000  # bytes, unpacked: half a day of motion
+LARGEST = 920_000_000  # bytes, unpacked: our joints at 120 frames/s, and their sound, for an hour
 # endings of other files, and what to do with them
 ELSEWHERE = {
     (".fbx", ".c3d", ".glb", ".gltf", ".usd", ".blend"): "export it as BVH, for example in Blender",
@@ -86,10 +86,8 @@ def read_motion(
     for what is no path.  Notebook: 00
     """
     path = checked_path(path)
-    if re.match(r"\w+:/", str(path)):
-        raise MotionError(f"{path} is an address: download the file first, then give its name")
     check_there(path)
-    ending = path.suffix.lower()
+    ending = (path.suffix or path.name).lower()  # a file may be called .bvh
     read = registry.readers.get(ending)
     if read is None:
         advice = next((words for group, words in ELSEWHERE.items() if ending in group), "")
@@ -126,7 +124,7 @@ def read_motions(folder: str | Path) -> list[Motion]:
     cannot be read or is too short, or in which a joint is missing, and says why.
     Raises MotionError if the folder does not exist, or no file in it can be used.
     """
-    folder = Path(folder)
+    folder = home(folder)
     if not folder.is_dir():
         raise MotionError(f"{folder} is no folder with motions")
     endings = set(registry.readers.names())
@@ -248,7 +246,7 @@ def read_npz(path: Path, up: str = "", unit: str = "") -> Motion:
         raise MotionError(f"{path.name}: {error}") from None
     if angles:
         raise MotionError(f"{path.name} {ANGLES}")
-    there = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+    there = ", ".join(f"{name:.80} {array.shape}" for name, array in arrays.items())
     raise MotionError(
         f"{path.name} contains {there or 'nothing'}; a motion has `positions` (frames, joints, 3) "
         f"in metres and `fps`, and for another skeleton the `names` of its joints as well"
@@ -287,7 +285,10 @@ def named_joints(path: Path) -> tuple[tuple[str, ...], int, float] | None:
 
 
 def _names(arrays: dict[str, np.ndarray]) -> tuple[str, ...]:
-    return tuple(map(str, arrays["names"].tolist())) if "names" in arrays else JOINTS
+    names = tuple(map(str, arrays["names"].tolist())) if "names" in arrays else JOINTS
+    if long := [name for name in names if len(name) > LONGEST_NAME]:
+        raise MotionError(f"the name {long[0]:.40}... has {len(long[0]):,} letters; shorten it")
+    return names
 
 
 def _is_named(arrays: dict[str, np.ndarray]) -> bool:
@@ -318,10 +319,10 @@ def _arrays(path: Path) -> dict[str, np.ndarray]:
     try:
         with zipfile.ZipFile(path) as packed:
             size = sum(entry.file_size for entry in packed.infolist())
-        if size > LARGEST:
-            raise MotionError(
-                f"{path.name} unpacks to {size / 1e9:.0f} GB; cut it into shorter takes"
-            )
+            if size > LARGEST:
+                raise MotionError(f"{path.name} unpacks to {size / 1e9:.1f} GB; cut it into takes")
+            for name in set(packed.namelist()) - {"audio.npy"}:  # it has samples, not frames
+                check_header(packed.open(name), path.name)
         with np.load(path, allow_pickle=False) as file:
             return {name: file[name] for name in file.files}
     except MotionError:

@@ -21,12 +21,13 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float
 
+from ..._files import home
 from .. import registry
 from ..arguments import check_there
 from ..motion import Motion, MotionError
 from ..root_frame import FPS, forward_left
 from ..skeleton import BONE_LENGTHS, J, Skeleton, joint_index
-from .joints import mended_joints
+from .joints import check_header, mended_joints
 
 NUMBERS = 263
 # name and parent of each joint, in the order of SMPL
@@ -328,13 +329,15 @@ def load_array(path: str | Path) -> np.ndarray:
 
     Raises FileNotFoundError, and MotionError for another file or a damaged one.
     """
-    path = Path(path).expanduser()
+    path = home(path)
     check_there(path)
     try:
         with path.open("rb") as file:
             begins = file.read(6)
-        if begins != b"\x93NUMPY":
-            raise MotionError(f"{path.name} is no .npy file, whatever its name says")
+            if begins != b"\x93NUMPY":
+                raise MotionError(f"{path.name} is no .npy file, whatever its name says")
+            file.seek(0)
+            check_header(file, path.name)
         return np.load(path, allow_pickle=False)
     except MotionError:
         raise

@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from ..._files import home
 from ..arguments import check_there
 from ..motion import Motion, MotionError, MotionWarning
 from ..root_frame import FPS
@@ -48,7 +49,7 @@ def read_captions(path: str | Path) -> list[Caption]:
     0.0#0.0 means the whole clip; so does nan, which some files contain.
     Raises FileNotFoundError, and MotionError with file and line.
     """
-    path = Path(path).expanduser()
+    path = home(path)
     captions = []
     for number, line in enumerate(_lines_of(path), 1):
         if not line.strip():
@@ -105,7 +106,7 @@ def split_names(path: str | Path) -> list[str]:
 
     Raises FileNotFoundError, and MotionError with the line for what is no name.
     """
-    path = Path(path).expanduser()
+    path = home(path)
     names = []
     for number, line in enumerate(_lines_of(path), 1):
         name = line.strip()
@@ -132,7 +133,7 @@ def read_clips(
     Raises FileNotFoundError for a missing folder or list, and MotionError for a folder without
     motions or texts, before the first clip is read.
     """
-    folder = Path(folder).expanduser()
+    folder = home(folder)
     check_there(folder)
     places = [folder / name for name in MOTIONS if (folder / name).is_dir()]
     texts = folder / "texts"

@@ -6,9 +6,11 @@ certain is mended, and said; what is doubtful is said.
 
 import warnings
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
+from ..arguments import too_many_frames
 from ..check import LONG, SHORT, bones_over_ours, unit_name, unlike_a_body
 from ..motion import Motion, MotionError, MotionWarning
 from ..normalise import unit_of_path, unmirror, whole_take
@@ -18,6 +20,17 @@ from ..upright import rotate_y_up, which_way_up
 
 STATED = "+y"  # up, by the formats of arrays that are read here
 OFF = 1.6  # times as large or as small as a person: another unit
+
+
+def check_header(file: Any, name: str) -> None:
+    """Raise MotionError if an open .npy file says that its array has too many frames.
+
+    The numbers are not read, so they take no memory. Raises ValueError for another file.
+    """
+    version, _ = np.lib.format.read_magic(file)
+    shape, *_ = getattr(np.lib.format, f"read_array_header_{min(version, 2)}_0")(file)
+    if words := too_many_frames(max(shape, default=0)):
+        raise MotionError(f"{name}: an array {shape} has {words}")
 
 
 def mended_joints(motion: Motion, name: str, up: str = "", unit: str = "") -> Motion:

@@ -4,6 +4,7 @@ In a network's raw output the bone lengths vary a little; a BVH file has constan
 a close motion with constant bones and reports how far the joints moved.
 """
 
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -178,11 +179,10 @@ def euler_zxy(local: Float[np.ndarray, "T N 3 3"]) -> Float[np.ndarray, "T N 3"]
     before is chosen.
     """
     frames, nodes = local.shape[:2]
-    angles = (
-        scipy.spatial.transform.Rotation.from_matrix(local.reshape(-1, 3, 3))
-        .as_euler("ZXY")
-        .reshape(frames, nodes, 3)
-    )
+    turns = scipy.spatial.transform.Rotation.from_matrix(local.reshape(-1, 3, 3))
+    with warnings.catch_warnings():  # at 90 degrees two angles do the same, and scipy chooses
+        warnings.filterwarnings("ignore", "Gimbal lock")
+        angles = turns.as_euler("ZXY").reshape(frames, nodes, 3)
     twin = angles * [1, -1, 1] + np.pi
     for t in range(1, frames):
         near, far = (wrap_to(other[t], angles[t - 1]) for other in (angles, twin))

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float
 
+from ...arguments import too_many_frames
 from .tokens import FARTHEST, BvhError, to_count, to_number
 
 SLOWEST, FASTEST = 0.5, 0.001  # s per frame; a frame time outside this range is an error
@@ -127,6 +128,8 @@ def frame_rows(
             path,
             declared_line,
         )
+    if words := too_many_frames(declared):
+        raise BvhError(f"the file has {words}.", path, declared_line)
     values, counts = numbers(lines, first, columns, path)
     check_frame_ends(counts, columns, path)
     found = len(values) // len(columns)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .tokens import BvhError, Statement, to_count, to_number
+from .tokens import LONGEST_NAME, BvhError, Statement, to_count, to_number
 
 CHANNELS = tuple(axis + kind for kind in ("position", "rotation") for axis in "XYZ")
 SPELLED = {channel.lower(): channel for channel in CHANNELS}
@@ -63,6 +63,8 @@ def joint(reader: Reader, statement: Statement) -> None:
         raise reader.error(
             f"{statement.word.upper()} without a name.", statement.line, current(reader)
         )
+    if len(name) > LONGEST_NAME:
+        raise reader.error(f"a name of {len(name):,} letters; shorten it.", statement.line)
     if statement.word == "root" and reader.nodes:
         first = reader.nodes[0]
         problem = (

@@ -9,8 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
+from ...._files import home
+
 LARGEST = 300_000_000  # bytes: an hour of a detailed skeleton at 120 frames/s is smaller
 MOST_LINES = 2_000_000  # an hour at 240 frames/s has 864,000
+LONGEST_NAME = 200  # letters of a joint's name
 LONGEST_LINE = 1_000_000  # characters: a frame of a thousand joints has some 100,000
 FARTHEST = 1e6  # the largest number: a kilometre in millimetres, or 2,777 turns in degrees
 SNIFF = 65_536
@@ -60,7 +63,7 @@ def read_lines(path: str | Path) -> list[str]:
     Raises BvhError for a folder, an empty, binary, UTF-16 or HTML file, and for one that is too
     large, has too many lines or too long ones.
     """
-    path = Path(path).expanduser()
+    path = home(path)
     if path.is_dir():
         raise BvhError("this is a folder; give one of the .bvh files in it.", path)
     if path.stat().st_size > LARGEST:
@@ -175,8 +178,8 @@ def to_number(text: str, path: str | Path, line: int, joint: str | None = None) 
 
 
 def to_count(text: str) -> int | None:
-    """A whole number of at most nine digits, or None."""
-    return int(text) if text.isascii() and text.isdecimal() and len(text) <= 9 else None
+    """A whole number of at most 18 digits, or None."""
+    return int(text) if text.isascii() and text.isdecimal() and len(text) <= 18 else None
 
 
 def why_no_number(text: str) -> str:
