@@ -23,20 +23,22 @@ class Head:
     speed: str = ""
     ways: list[str] = field(default_factory=list)
     limbs: list[str] = field(default_factory=list)
+    toward: str = ""  # the side to which an arm points
 
 
 def take(head: Head, token: str, tokens: Sequence[str], k: int) -> bool:
     """Take a word about an act; whether it is one."""
     if token in SIDES and head.verb == "point":
         by_limb = bool({*tokens[k + 1 : k + 3]} & LIMBS.keys()) or "with" in tokens[k - 2 : k]
-        if by_limb or not head.side:
+        if by_limb:
             head.side = SIDES[token]
-        if not by_limb:
+        else:
+            head.side, head.toward = head.side or SIDES[token], SIDES[token]
             head.ways.append("aside")
     elif token in SIDES:
         other = head.side and SIDES[token] and head.side != SIDES[token]
         head.side = "both" if other else SIDES[token] or head.side
-    elif token in NUMBERS or token.isdigit():
+    elif number_of(token):
         if tokens[k + 1 : k + 2] and tokens[k + 1] in (
             "hand",
             "hands",
@@ -47,7 +49,7 @@ def take(head: Head, token: str, tokens: Sequence[str], k: int) -> bool:
         ):
             head.side = "both" if NUMBERS.get(token) == 2 else head.side
         else:
-            head.count = NUMBERS.get(token) or int(token)
+            head.count = number_of(token)
             head.vague = token in VAGUE
     elif token in PACES:
         head.speed = PACES[token]
@@ -60,6 +62,11 @@ def take(head: Head, token: str, tokens: Sequence[str], k: int) -> bool:
     else:
         return False
     return True
+
+
+def number_of(token: str) -> int:
+    """The number that a word says; 0 for none. Beyond 9999 there are no digits to read."""
+    return NUMBERS.get(token) or (int(token[:4]) if token.isdecimal() else 0)
 
 
 def say_of(head: Head, more: Head) -> None:
@@ -84,9 +91,11 @@ def acts_of(head: Head, notes: list[str]) -> Iterator[tuple[Head, Act]]:
     if head.verb == "stretch":
         side = side or "both"
     notes += wayless(head, verb)
+    if head.toward in ONE and side in ONE and head.toward != side:
+        notes.append(f"the {side} arm has no way to point to the {head.toward}: to its own side")
     if verb in ("punch", "kick") and side == "both":  # one after the other
-        for one in ONE:
-            count = allowed_count(verb, kind, head.count // 2, notes)
+        for k, one in enumerate(ONE):
+            count = allowed_count(verb, kind, (head.count + 1 - k) // 2, notes)
             yield head, Act(verb, one, count, *said(kind, head, notes))
         return
     side = allowed_side(verb, kind, side, notes)
@@ -161,6 +170,8 @@ def wayless(head: Head, verb: str) -> list[str]:
     if "place" in head.ways and head.verb in ("walk", "run"):
         return [f"{head.word!r} has no way to stay on the spot, and goes along"]
     other = {*head.ways} - {*ONLY.get(verb, IN_WORDS)}
+    if head.verb in ("walk", "run") and {"forward", "back"} <= {*head.ways}:
+        other.add("forward")  # it goes back
     wrong = [words for way, words in IN_WORDS.items() if way in other]
     return [f"{head.word!r} has no way {way}: it is left out" for way in wrong]
 

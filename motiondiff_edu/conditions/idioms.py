@@ -30,7 +30,16 @@ REWRITTEN = tuple(
         (r"\bkeep(s|ing)? (on )?going\b", " keep-going "),
         # what says nothing, and what must not be done
         (r"\bgoing to (?!{own}(left|right|door|front|back|side|end)\b)(?!the|an?\b)", " "),
-        (r"\b(don't|dont|do not|doesn't|does not|not|without) mov(e|ing)( at all)?\b", " stand "),
+        (r"\b(don't|dont|do not|doesn't|does not) move( at all)?\b", " stand "),
+        (r"\b(not|without) moving\b", " "),
+        (r"\b(can't|cannot|can not|won't|doesn't|never) stop (?=\w+ing\b)", " "),
+        (
+            r"\b(instead of|rather than|no|not|cannot|can't|won't|refuses to) "
+            r"(?!more|longer|one)\w+"
+            r"(?<!ly)(?<!too)(?<!hurry)(?<!rush)\b",
+            " not-done ",
+        ),
+        (r"\bwithout {own}(arms?|hands?)( \w+)?", " not-done "),
         (r"\b(don't|dont|do not|doesn't|does not|never|didn't) \w+", " not-done "),
         (r"\b(in|as an?) greeting\b|\ball the way\b|\bthe (whole|entire) (time|way)\b", " "),
         (r"\b(in|from) {own}(seated|sitting) position\b", " "),
@@ -86,7 +95,7 @@ REWRITTEN = tuple(
             r"\b(start|begin)(s|ing|ning)?( off| out)?( by| with| to)?\b",
             " ",
         ),
-        (r"\b(keep|continue)s?( on)?( to)? (?=\w+ing\b|walk|run)", " "),
+        (r"\b(keep|continue)s?( on)?( to)? (?=\w+ing\b|walk|run)", " is "),
         (
             r"\b(slow|break|speed|chang|transition|switch|mov|go|com)(e?s|ing|e)?( down| up)? "
             r"(in)?to (a |an )?(slow |quick )?(?=(walk|run|jog|sprint|stop|halt|standstill)\b)",
@@ -122,8 +131,8 @@ REWRITTEN = tuple(
         (r"^\W*reverses?\b", " walk backwards "),
         (r"\bflag(s|ging)? down\b", " wave "),
         (r"\b(left|right) cross\b", r"\1 punch"),
-        (r"\bside[- ]?kick(s|ing)?\b", r"kick\1"),
-        (r"\bstop(s|ping)? (moving|walking|running|going)\b", " stand "),
+        (r"\bside[- ]?kick(s|ing)?\b", r"kick\1 sideways"),
+        (r"\bstop(s|ped|ping)? \w+ing\b", " stand "),
         (
             r"\bsquat(s|ting)?( down)? (and|then) (come|get|go|stand)(s|ing)? (back )?up\b",
             " squat ",
@@ -297,7 +306,7 @@ PACES = {
 WAYS = {
     **dict.fromkeys("forward forwards ahead onward onwards straight front".split(), "forward"),
     **dict.fromkeys("back backward backwards rearward rearwards reverse".split(), "back"),
-    **dict.fromkeys("sideways side aside sideward laterally sidewards".split(), "aside"),
+    **dict.fromkeys("sideways side sides aside sideward laterally sidewards".split(), "aside"),
     **dict.fromkeys("around round".split(), "around"),
     **dict.fromkeys("up upward upwards overhead raised high".split(), "up"),
     "on-the-spot": "place",

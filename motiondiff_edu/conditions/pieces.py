@@ -1,7 +1,7 @@
 """A piece of a sentence without "then" and "while", read word by word.
 
 A verb takes the words about it that stand after it, and those before it that lead to it. Words that
-say nothing about a movement are passed over; what is left is named. Notebook: 16
+say nothing about a movement are passed over; what is left is named.
 """
 
 import re
@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 from .acts import KINDS, ONE, Act
-from .heads import Head, acts_of, say_of, take
+from .heads import Head, acts_of, number_of, say_of, take
 from .idioms import (
     ADDRESSED,
     FILLERS,
@@ -106,7 +106,8 @@ class Piece:
 
     def again(self, k: int, token: str) -> bool:
         """The last verb on its next side: "punches left, right, left", "lifts an arm, waves it"."""
-        if not self.heads or not self.joined and token != "it":
+        row = k > 0 and self.tokens[k - 1] in ONE  # "left right left"
+        if not self.heads or not (self.joined or row or token == "it"):
             return False
         last = self.heads[-1]
         if token == "it" and last.verb == "wave" and len(self.heads) > 1:
@@ -115,7 +116,7 @@ class Piece:
         if token in ONE and not leads(self.tokens, k) and next_side(last):
             times = self.before.count or last.count
             return self.begin(replace(last, side=token, joined=self.joined, count=times))
-        if last.count and (token in NUMBERS or token.isdigit()):
+        if last.count and self.joined and number_of(token):
             return take(self.before, token, self.tokens, k)  # "twice left, once right"
         return False
 
@@ -149,7 +150,10 @@ class Piece:
 
     def name_unknown(self) -> None:
         """Say which words are not understood; what stands before the first verb is who does it."""
-        words = [word for word in self.unknown if not self.heads or word not in self.subject]
+        # "a knight bows", and not "karate kick"
+        does = bool(self.heads) and self.heads[0].word.endswith(("s", "ing", "ed"))
+        who = self.subject if does or self.heads and self.tokens[0] in WHOSE else []
+        words = [word for word in self.unknown if word not in who]
         if words:
             left = "not understood, and left out" if self.heads else "not understood"
             named = [repr(word.replace("-", " ")) for word in dict.fromkeys(words)]

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from .acts import KINDS, ONE, USUALLY, Act, Parts
-from .heads import Head, take
+from .heads import Head, number_of, take
 from .idioms import HEADS, LIMBS, NUMBERS, PACES, SIDES, VAGUE, WAYS, rewritten
 from .pieces import acts_in
 from .text import base_forms, words_of
@@ -59,11 +59,13 @@ def unused(text: str, parts: Sequence[tuple[Act, ...]], notes: Sequence[str]) ->
     acts = [act for part in parts for act in part]
     verbs = {act.verb for act in acts}
     sides = {act.side for act in acts} | ({"both"} if verbs & {"jump", "clap", "squat"} else set())
-    sides |= {*ONE} if "both" in sides or any(act.direction == "aside" for act in acts) else set()
-    most = max((act.count or USUALLY.get(act.verb, 1) for act in acts), default=1)
-    most = max(most, len(acts), 2 if "both" in sides else 1)
+    sides |= {*ONE} if "both" in sides else {"both"} if sides >= {*ONE} else set()
+    most = max(sum(act.count or USUALLY.get(act.verb, 1) for act in acts), 1 + ("both" in sides))
     shown = {"back": {"back"}, "aside": {"aside"}, "walk": {"walk", "back", "aside"}}
     shown |= {"raise": {"raise", "hold"}}
+    # "'kick' has no side: 'left' is left out"
+    quoted = (one for note in notes for one in re.findall(r"'([^']*)'|(\d+)", note))
+    named = {word for pair in quoted for one in pair for word in one.split()}
     found = []
     for word in words_of(text) if acts else ():
         verb = next((HEADS[form] for form in (word, *base_forms(word)) if form in HEADS), "")
@@ -71,7 +73,7 @@ def unused(text: str, parts: Sequence[tuple[Act, ...]], notes: Sequence[str]) ->
         lost = (
             SIDES.get(word, "") not in {"", *sides}
             or word not in VAGUE
-            and int(NUMBERS.get(word, word if word.isdigit() else 1)) > most
+            and number_of(word) > most
             or PACES.get(word, "") not in {"", *(act.speed for act in acts)}
             or away in ("back", "aside")
             and not verbs & shown[away]
@@ -79,8 +81,7 @@ def unused(text: str, parts: Sequence[tuple[Act, ...]], notes: Sequence[str]) ->
             or verb in PLAINLY
             and not verbs & shown.get(verb, {verb})
         )
-        names = (word, SIDES.get(word) or word, str(NUMBERS.get(word, word)))
-        if lost and not any(name in note for note in notes for name in names):
+        if lost and not named & {word, SIDES.get(word), str(number_of(word))}:
             found.append(word)
     return list(dict.fromkeys(found))
 
@@ -135,9 +136,12 @@ def again(clause: str, parts: list[tuple[Act, ...]]) -> list[tuple[Act, ...]]:
     for k, word in enumerate(words):
         take(said, word, words, k)
     once_more = {"again-it", "another", "more", "again"} & {*words}
-    if not parts or not (once_more or said.side or said.count or said.speed):
+    away = "back" in said.ways and bool(parts) and parts[-1][-1].verb in ONWARD
+    if not parts or not (once_more or away or said.side or said.count or said.speed):
         return []
     *others, last = parts[-1]
+    if away:  # "walks forward, and then back"
+        return [(Act("back"),)]
     kind = KINDS[last.verb]
     if said.side and said.side not in kind.sides or said.speed and said.speed not in kind.speeds:
         return []
@@ -158,7 +162,12 @@ def parts_of(clause: str, notes: list[str]) -> list[tuple[Act, ...]]:
     joined = joined_acts(groups[0])
     for group in groups[1:]:
         more = joined_acts(group)
-        joined[-1:] = at_once(joined[-1], more[0])
+        both = at_once(joined[-1], more[0])
+        verbs = [act.verb for part in both for act in part]
+        if len(both) > 1 and "stand" not in verbs and len({*verbs}) > 1:
+            first, then = (" and ".join(repr(act.verb) for act in part) for part in both)
+            notes.append(f"{first} and {then} are done one after the other, not at once")
+        joined[-1:] = both
         joined += more[1:]
     return joined
 

@@ -9,14 +9,15 @@ Notebook: 16
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import torch
 from jaxtyping import Bool, Float, Int
 from torch import Tensor, nn
 
-from .acts import in_words
+from .acts import PLAIN, in_words
 from .sentences import Understood, understand
-from .text import Read, TextError, read_words
+from .text import Read, TextError, lemma, read_words
 
 # ids
 PADDING = 0  # of no word
@@ -66,6 +67,13 @@ def ids_of(texts: list[tuple[str, ...]], vocabulary: tuple[str, ...]) -> Int[Ten
     return torch.tensor([row + [PADDING] * (longest - len(row)) for row in rows])
 
 
+@cache
+def knows_all_acts(vocabulary: tuple[str, ...]) -> bool:
+    """Whether a network has a word for each act that the grammar knows."""
+    known = frozenset(vocabulary)
+    return all(lemma(phrase.split()[0], known) in known for phrase, _ in PLAIN.values())
+
+
 @dataclass(frozen=True)
 class WordReader:
     """How a network with a vocabulary reads; `clip.ClipModel` has the same two methods."""
@@ -76,11 +84,15 @@ class WordReader:
         """The words of a text.
 
         A sentence that the grammar understands is said in the plain words of the training.
-        Raises TextError as `text.read_words`.
+        Raises TextError as `text.read_words`, and for a sentence in which it understands no act.
         """
         found = understand(text) if isinstance(text, str) else Understood(())
         if not found.parts:
-            return read_words(text, self.words)
+            words = read_words(text, self.words)
+            if knows_all_acts(self.words):
+                why = "; ".join(found.notes) or "no act is understood"
+                raise TextError(f"{text.strip()!r:.80} names no act: {why}")
+            return words
         try:
             plain = read_words(in_words(found.parts), self.words, {})
         except TextError:  # a network with other words

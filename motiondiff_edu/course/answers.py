@@ -128,7 +128,13 @@ def _intended(source: str) -> Iterable[str]:
 
 # of these modules alone functions are called to make a value: others may take long
 CALLED = frozenset("math cmath np numpy torch functools itertools fractions".split())
-BUILTIN = frozenset("float int complex bool str list tuple dict set len abs min max sum".split())
+BUILTIN = frozenset(
+    "float int complex bool str list tuple dict set len abs min max sum range sorted round zip"
+    " enumerate pow divmod".split()
+)
+CHANGING = frozenset(
+    "append extend insert remove pop clear update add discard sort reverse".split()
+)
 
 
 def definitions(source: str) -> tuple[str, ...]:
@@ -177,22 +183,39 @@ def _is_value(node: ast.expr) -> bool:
 
 def _root(node: ast.expr) -> str:
     """The name that an expression like np.linalg.norm begins with; "" for another one."""
-    while isinstance(node, ast.Attribute):
+    while isinstance(node, ast.Attribute | ast.Subscript):
         node = node.value
     return node.id if isinstance(node, ast.Name) else ""
 
 
-def _changed_by(node: ast.stmt) -> list[str]:
-    """The names that a statement assigns, or whose methods it calls ("table.append(1)")."""
-    names = {
-        one.id
-        for one in ast.walk(node)
-        if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
-    }
-    if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
-        function = node.value.func
-        names |= {_root(function)} - {""} if isinstance(function, ast.Attribute) else set()
-    return sorted(names - {"checks"})
+def assigned(statement: str) -> list[str]:
+    """The names that a statement gives values to."""
+    tree = _parsed(statement)
+    return [name for node in tree.body for name in _changed_by(node)] if tree else []
+
+
+def _changed_by(node: ast.AST) -> list[str]:
+    """The names that a statement assigns or deletes, also by an item of theirs, and those whose
+    values it changes ("table.append(1)").
+    """
+    names = set()
+    for one in _own(node):
+        if isinstance(one, ast.Name) and not isinstance(one.ctx, ast.Load):
+            names.add(one.id)
+        elif isinstance(one, ast.Subscript | ast.Attribute) and not isinstance(one.ctx, ast.Load):
+            names.add(_root(one))
+        elif isinstance(one, ast.Call) and isinstance(one.func, ast.Attribute):
+            names |= {_root(one.func)} if one.func.attr in CHANGING else set()
+    return sorted(names - {"", "checks"})
+
+
+def _own(node: ast.AST) -> Iterator[ast.AST]:
+    """A statement's parts, but none of functions and comprehensions, whose names are theirs."""
+    apart = (ast.FunctionDef, ast.ClassDef, ast.Lambda, ast.comprehension)
+    yield node
+    for one in ast.iter_child_nodes(node):
+        if not isinstance(one, apart):
+            yield from _own(one)
 
 
 def exercises(path: Path) -> list[str]:

@@ -68,7 +68,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(chosen: argparse.Namespace) -> int:
-    """Try all answers, print the table and the commonest mistakes, write the CSV file."""
+    """Try all answers, print the table and what several people made wrong, write the CSV file."""
     if not hasattr(os, "fork"):
         raise CollectError("collect needs a system with fork: Linux, macOS, or WSL on Windows")
     if chosen.seconds < 1 or chosen.gigabytes <= 0:
@@ -77,11 +77,8 @@ def run(chosen: argparse.Namespace) -> int:
         if chosen.out.exists() and not chosen.overwrite:
             raise CollectError(f"{chosen.out} exists: choose another name, or add --overwrite")
         check_writable(chosen.out)
-    if not fence.version():
-        progress(
-            "the answers could change all your files: this system cannot keep them in one folder "
-            "(Linux since 5.13 can). Collect only from people whom you trust"
-        )
+    if can := fence.without(fence.version()):
+        progress(f"on this system an answer can {', '.join(can)}: collect only from whom you trust")
     copies = copies_of(chosen.folder, chosen.only)
     rows, whole = results(copies, chosen.seconds, chosen.gigabytes)
     say(table(rows))
@@ -106,7 +103,9 @@ def copies_of(folder: Path, only: list[str]) -> dict[tuple[str, str], list[Path]
     """
     if not folder.is_dir():
         raise CollectError(f"{folder} is no folder; it should have a folder for each student")
-    wanted = {re.sub(r"\D.*", "", number).zfill(2) for number in only}
+    wanted = {number_of(f"{number.zfill(2)}.") for number in only}
+    if "" in wanted:
+        raise CollectError(f"--only takes numbers of notebooks, 02 for instance, not {only}")
     found: dict[tuple[str, str], list[Path]] = {}
     others = []
     for path in sorted(_notebooks(folder)):
@@ -143,16 +142,16 @@ def copies_of(folder: Path, only: list[str]) -> dict[tuple[str, str], list[Path]
 def course_names() -> dict[str, str]:
     """The names of the course's notebooks without .ipynb, by number."""
     paths = (notebook_folder() / "student").glob("[0-9][0-9]_*.ipynb")
-    return {path.name[:2]: path.stem for path in paths}
+    return {path.name[:2]: path.stem for path in sorted(paths)}
 
 
 def number_of(name: str) -> str:
     """Which notebook a file is by its name: 02_noise, "Copy of 02_noise", 02-noise-1; or ""."""
     for number, stem in course_names().items():
-        own = re.escape(stem).replace("_", "[_ -]")
-        if re.search(own, name, re.I) or re.match(rf"{number}[_ .-]", name):
+        if re.search(re.escape(stem).replace("_", "[_ -]"), name, re.I):
             return number
-    return name[:2] if re.match(r"\d\d_", name) else ""
+    numbered = re.match(r"(\d\d)(_|[ .-](?!\d))", name)  # and no date
+    return numbered[1] if numbered else ""
 
 
 def _notebooks(folder: Path) -> Iterator[Path]:

@@ -37,9 +37,11 @@ def run(args: argparse.Namespace) -> None:
 
     try:
         notebook = nbformat.read(args.notebook, as_version=4)
-        nbformat.validate(notebook)
-    except (ValueError, AttributeError, nbformat.ValidationError) as error:
+        cells = [(cell.cell_type, cell.source) for cell in notebook.cells]
+    except (ValueError, AttributeError, TypeError, OSError) as error:
         raise ValueError(f"{args.notebook} is no notebook: {error!s:.80}") from None
+    if not cells:
+        raise ValueError(f"{args.notebook} is no notebook: it has no cells")
     figures, others = still_alive(notebook)
     page, _ = HTMLExporter().from_notebook_node(notebook)
     with replacing(out) as aside:

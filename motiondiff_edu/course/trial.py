@@ -32,7 +32,7 @@ from pathlib import Path
 from . import answers, fence
 from .answers import DIED, FAILED, OPEN, RIGHT, SLOW, UNREADABLE, WRONG, Answer
 
-GONE = "its cell is gone"
+NO_CELL = "its cell is gone"
 NOT_REACHED = "its check was not reached"
 PR_SET_CHILD_SUBREAPER = 36  # of Linux's prctl
 RESULT = 3  # the one descriptor that an answer's process keeps
@@ -89,8 +89,11 @@ def _defined(statements: Sequence[str], prepared: dict) -> dict:
     """
     names = dict(prepared)
     for statement in statements:
-        with contextlib.suppress(Exception):
+        try:
             exec(compile(statement, "before", "exec"), names)
+        except Exception:
+            for name in answers.assigned(statement):  # none has a value of before
+                names.pop(name, None)
     names |= prepared
     return names
 
@@ -113,7 +116,7 @@ def answered(question: dict, prepared: dict, handed_out: dict[str, Answer]) -> t
     except answers.CopyError as error:
         return UNREADABLE, str(error)
     if question["check"] not in given:
-        return OPEN, GONE
+        return OPEN, NO_CELL
     return told_of(given[question["check"]], question["check"], prepared)
 
 
@@ -151,9 +154,12 @@ def _answer(result: int, question: dict, prepared: dict, handed_out: dict[str, A
     os.environ["TMPDIR"] = question["folder"]
     tempfile.tempdir = None  # looked up again
     _limit(question["gigabytes"])
-    fence.keep_within(question["folder"])
     here = os.getpid()
-    found = answered(question, prepared, handed_out)
+    try:
+        fence.keep_within(question["folder"])
+        found = answered(question, prepared, handed_out)
+    except OSError as error:
+        found = DIED, str(error)
     if os.getpid() == here:  # and no fork that the answer made
         line = answers.written(question["token"], *found)
         os.ftruncate(RESULT, 0)

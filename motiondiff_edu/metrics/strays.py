@@ -56,9 +56,9 @@ def with_height(flat: Float[np.ndarray, "T 2"]) -> Float[np.ndarray, "T 3"]:
 
 
 def has_steps(given: Given) -> bool:
-    """Whether a toe is given for a second in neighbouring frames; keyframes are poses alone."""
-    toes = np.isfinite(given[:, list(TOES)]).all(-1)
-    return bool((toes[1:] & toes[:-1]).any(1).sum() >= SECOND * FPS)
+    """Whether a hand or toe is given for a second in neighbouring frames; keyframes are poses."""
+    ends = np.isfinite(given[:, list(ENDS)]).all(-1)
+    return bool((ends[1:] & ends[:-1]).any(1).sum() >= SECOND * FPS)
 
 
 def reach(made: Points, given: Given, new: Bool[np.ndarray, "T 21"]) -> str:
@@ -117,7 +117,9 @@ def seam(made: Points, given: Given, new: Bool[np.ndarray, "T 21"]) -> str:
     """A joint that goes much farther from a given frame to a generated one than beside them."""
     changes = np.argwhere(new[1:] != new[:-1]).tolist()
     seams = [(last + 1, joint) for last, joint in changes if 1 <= last < len(made) - 2]
-    jumps = [(seam_step(made[:, [joint]], k), k, joint) for k, joint in seams]
+    jumps = [
+        (seam_step(made[max(k - 4, 0) : k + 4, [joint]], min(k, 4)), k, joint) for k, joint in seams
+    ]
     far, k, joint = max(jumps, default=(0.0, 0, 0))
     if far < JUMP:
         return ""

@@ -206,7 +206,7 @@ def edit(
             warnings.warn(f"{motion.name}: {note}", MotionWarning, stacklevel=2)
         one = _made(motion, nothing, positions, f"edited: {text.strip():.40}")
         about = in_words(found.asked)
-        edited.append(replace(one, notes=(*found.notes, *notes), about=about))
+        edited.append(replace(one, notes=(*one.notes, *found.notes, *notes), about=about))
     return edited if samples > 1 else edited[0]
 
 

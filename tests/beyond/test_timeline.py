@@ -18,7 +18,6 @@ from motiondiff_edu.beyond.timeline import (
     D,
     Timed,
     acts_of,
-    joined,
     mirrored,
     of_the_legs,
     tidied,
@@ -142,10 +141,3 @@ def test_a_blurred_timeline_is_tidied():
     batch = torch.from_numpy(np.stack([noisy, clean])).float()
     assert tidied(batch).shape == batch.shape
     torch.testing.assert_close(tidied(batch)[1].double(), torch.from_numpy(clean))
-
-
-def test_of_two_timelines_the_legs_are_those_of_the_first():
-    one, other = torch.zeros(2, 5, D), torch.ones(2, 5, D)
-    both = joined([one, other])
-    assert not both[..., of_the_legs()].any() and both[..., ~of_the_legs()].all()
-    assert torch.equal(joined([other]), other)

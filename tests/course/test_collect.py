@@ -257,7 +257,13 @@ def test_a_notebook_that_the_course_does_not_have_is_left_out(tmp_path, capsys):
         ("TWO = 2\nfor TWO in range(9):\n    pass", {}),
         ("TWO = 1\nTWO += 1", {"TWO": 2}),
         ("import math\nmath.sqrt(2)\nTWO = math.sqrt(4)", {"TWO": 2.0}),
-        ("TWO = len([1, 2])\nTWO.bit_length", {"TWO": 2}),
+        ("TWO = len([1, 2])\nTWO.bit_length()", {"TWO": 2}),
+        ("TWO = []\nfor k in (1, 2):\n    TWO.append(k)", {}),
+        ("TWO = [1]\nTWO[0] = compute()", {}),
+        ("TWO = 1\ndel TWO", {}),
+        ("TWO = 1\nTWO = max(NOT_THERE)", {}),
+        ("TWO = 2\nrows = [TWO for TWO in range(3)]\nshow(TWO)", {"TWO": 2}),
+        ("TWO = list(range(3))", {"TWO": [0, 1, 2]}),
     ],
 )
 def test_names_have_their_last_value_or_none(source, kept):
@@ -271,7 +277,8 @@ def test_names_have_their_last_value_or_none(source, kept):
         ("02_noise.ipynb", "02"), ("02_noise-Copy1.ipynb", "02"), ("Copy of 02_noise.ipynb", "02"),
         ("anna_02-noise.IPYNB", "02"), ("02.ipynb", "02"), ("02 mine.ipynb", "02"),
         ("99_notes.ipynb", "99"), ("homework week 2.ipynb", ""), ("2026-11-02 x.ipynb", ""),
-        ("102_noise_of_mine.ipynb", "02"), ("noise.ipynb", ""),
+        ("102_noise_of_mine.ipynb", "02"), ("noise.ipynb", ""), ("10_02_noise.ipynb", "02"),
+        ("12.03.2026 02_noise.ipynb", "02"), ("12.03.2026.ipynb", ""),
     ],
 )  # fmt: skip
 def test_a_renamed_notebook_is_known_by_its_name(name, number):
@@ -296,7 +303,8 @@ def test_what_is_left_out_is_named_and_a_table_is_kept(tmp_path, capsys):
 def test_without_a_fence_that_is_said(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(fence, "version", lambda: 0)
     assert main(["collect", str(tmp_path)]) == 1
-    assert "the answers could change all your files" in capsys.readouterr().err
+    assert "an answer can change and remove all your files" in capsys.readouterr().err
+    assert [len(fence.without(has)) for has in (0, 1, 3, 4, 6)] == [4, 3, 2, 1, 0]
 
 
 FENCED = """
@@ -305,6 +313,7 @@ from pathlib import Path
 from motiondiff_edu.course import fence
 inside, outside, parent = Path("inside").absolute(), Path("outside").absolute(), os.getppid()
 server = socket.create_server(("127.0.0.1", 0))
+before = len(os.listdir("/proc/self/fd"))
 assert fence.keep_within(inside) == bool(fence.version())
 os.chdir(inside)
 Path("mine").write_text("x"); os.mkdir("deep"); os.rename("mine", "deep/mine")
@@ -317,13 +326,19 @@ def refused(*steps):
         sys.exit(f"{step.__code__.co_consts} was not refused")
 refused(
     lambda: (outside / "new").write_text("x"), lambda: (outside / "file").write_text("x"),
-    lambda: os.truncate(outside / "file", 0), lambda: os.remove(outside / "file"),
+    lambda: os.mkfifo(outside / "pipe"), lambda: os.remove(outside / "file"),
+    lambda: socket.socket(socket.AF_UNIX).bind(str(outside / "socket")),
     lambda: os.rename(outside / "file", "file"), lambda: os.mkdir(outside / "folder"),
     lambda: os.symlink("file", outside / "link"), lambda: os.rmdir(outside / "empty"),
 )
 subprocess.run(["rm", "-rf", str(outside)], stderr=subprocess.DEVNULL)
-if fence.version() >= 4: refused(lambda: socket.create_connection(server.getsockname(), 5))
+if fence.version() >= 3: refused(lambda: os.truncate(outside / "file", 0))
+if fence.version() >= 4:
+    refused(lambda: socket.create_connection(server.getsockname(), 5))
+    refused(lambda: socket.create_server(("127.0.0.1", 0)))
 if fence.version() >= 6: refused(lambda: os.kill(parent, 0))
+assert "NoNewPrivs:\\t1" in Path("/proc/self/status").read_text()
+assert len(os.listdir("/proc/self/fd")) == before, "a descriptor is left"
 """
 
 
@@ -340,6 +355,22 @@ def test_what_a_fence_refuses(tmp_path):
     assert (tmp_path / "outside" / "file").read_text() == "theirs"
 
 
+def test_a_version_of_landlock_gets_the_bits_that_it_knows():
+    assert fence.rights_of(fence.FILES, 1) == 0b1_1111_1111_0010
+    assert fence.rights_of(fence.FILES, 2) == 0b11_1111_1111_0010
+    assert fence.rights_of(fence.FILES, 7) == 0b1111_1111_1111_0010
+    assert [fence.rights_of(fence.TCP, has) for has in (3, 4)] == [0, 3]
+
+
+def test_a_fence_that_fails_is_said(tmp_path, monkeypatch, capfd):
+    def fails(folder):
+        raise OSError(7, "Landlock: no")
+
+    monkeypatch.setattr(fence, "keep_within", fails)
+    question = {"folder": str(tmp_path), "gigabytes": 2, "seconds": 9, "token": "t", "check": "x"}
+    assert trial.apart(question | {"paths": []}, {}, {}) == (answers.DIED, "[Errno 7] Landlock: no")
+
+
 @pytest.mark.skipif(not fence.version(), reason="this system has no Landlock")
 def test_an_answer_removes_nothing_outside_its_folder(tmp_path):
     (tmp_path / "keep").write_text("mine")
@@ -348,6 +379,13 @@ def test_an_answer_removes_nothing_outside_its_folder(tmp_path):
     with_cells(handed_in, "x", f"import shutil\nshutil.rmtree({str(tmp_path)!r}, True)\n{RIGHT}")
     assert main(["collect", str(handed_in)]) == 0
     assert (tmp_path / "keep").read_text() == "mine" and list(handed_in.rglob("*.ipynb"))
+
+
+def test_only_takes_numbers(tmp_path, capsys):
+    (tmp_path / "x").mkdir()
+    for wrong in ("noise", "nb02"):
+        assert main(["collect", str(tmp_path), "--only", wrong]) == 1
+        assert "--only takes numbers of notebooks" in capsys.readouterr().err
 
 
 def test_a_student_without_a_copy_is_named(tmp_path, capsys):

@@ -1,5 +1,7 @@
 """Editing by words: what stays, what changes, where it stands, and what is refused."""
 
+import inspect
+
 import numpy as np
 import pytest
 import torch
@@ -174,7 +176,7 @@ def test_what_cannot_be_edited_is_refused(mover, positions):
 
 
 def test_a_motion_with_holes_and_a_mask_that_does_not_fit_are_refused(mover, positions):
-    unchecked = getattr(edit_by_words, "__wrapped__", edit_by_words)  # as in a notebook
+    unchecked = inspect.unwrap(edit_by_words)  # as in a notebook
     holes = positions.copy()
     holes[3, 2, 1] = np.nan
     with pytest.raises(ValueError, match="NaN or infinity"):

@@ -14,7 +14,14 @@ from data_synth.actions import clips
 from motiondiff_edu.beyond import timeline
 from motiondiff_edu.conditions.acts import Act
 from motiondiff_edu.conditions.text import TextError
-from motiondiff_edu.conditions.word_encoder import NOTHING, PADDING, WordEncoder, ids_of, present
+from motiondiff_edu.conditions.word_encoder import (
+    NOTHING,
+    PADDING,
+    WordEncoder,
+    WordReader,
+    ids_of,
+    present,
+)
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.kinematic_loss import training_loss
 from motiondiff_edu.metrics.bodies import bone_lengths
@@ -148,6 +155,12 @@ def test_written_timelines_are_those_of_their_draw():
     assert torch.equal(first, again) and not torch.equal(first, other)
     found = [(one.verb, one.side, one.count) for one in timeline.acts_of(first.numpy())]
     assert found == [("kick", "right", 2), ("clap", "", 3)]
+
+
+@pytest.mark.parametrize("text", ["goes down", "throws his arm", "keeps still", "no waving"])
+def test_a_sentence_without_an_act_is_refused_by_the_shipped_reader(text):
+    with pytest.raises(TextError, match="names no act|does not know"):
+        WordReader(checkpoints.load(checkpoints.available()["mover"]).config.words).read(text)
 
 
 def test_a_plan_needs_a_network_that_takes_one(planning):

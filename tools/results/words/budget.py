@@ -4,7 +4,8 @@ Each row differs from the recipe of the mover in one choice, and is trained with
 bag of words and the regression have no timeline either: compare them with that row. Without a
 timeline the network is a fifth smaller; a step is then faster. Steps, sampler and captions are
 equal. The networks are half as wide as the shipped mover's and see a twelfth of the frames that it
-saw; so the numbers say what a choice is worth, and not how good a mover can be.
+saw; so the numbers say what a choice is worth, and not how good a mover can be. The regression saw
+older clips, of fewer acts: do not compare its row with the others.
 Source: MoFusion 3; choices are ours
 """
 
