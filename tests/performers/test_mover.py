@@ -123,7 +123,16 @@ def test_a_plan_is_made_tidied_and_followed(planning):
     assert (moved - planning.act_ids(ids, 40, steps=3, plan=0 * other, generator=seeded())).any()
 
 
-def test_what_is_not_shown_is_drawn_again_by_a_timeline_written_for_its_acts(planning, monkeypatch):
+@pytest.mark.parametrize(
+    "text, wanted",
+    [
+        ("walks while waving with the left hand", [("walk", ""), ("wave", "left")]),
+        ("kicks with the left foot, then bows", [("bow", ""), ("kick", "left")]),
+    ],
+)
+def test_what_is_not_shown_is_drawn_again_by_a_timeline_written_for_it(
+    planning, monkeypatch, text, wanted
+):
     plans = []
     before = Mover.denoiser
 
@@ -133,7 +142,6 @@ def test_what_is_not_shown_is_drawn_again_by_a_timeline_written_for_its_acts(pla
 
     monkeypatch.setattr(Mover, "denoiser", denoiser)
     how = {"seconds": 3.0, "steps": 2, "progress": False}
-    text = "walks while waving with the left hand"
     with pytest.warns(MotionWarning, match=f"asked: {text}; but .*is not to be seen"):
         made = planning.act(text, samples=2, tries=3, **how)
     assert all("is not to be seen" in one.notes[-1] for one in made)  # of an untrained network
@@ -141,7 +149,7 @@ def test_what_is_not_shown_is_drawn_again_by_a_timeline_written_for_its_acts(pla
     for plan in plans[1:]:
         for row in plan.numpy():
             acts = [(one.verb, one.side) for one in timeline.acts_of(row)]
-            assert sorted(acts) == [("walk", ""), ("wave", "left")]
+            assert sorted(acts) == wanted
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         planning.act("stands still", tries=3, **how)
